@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace early_fusion::core {
+
+/// What the agent can do in one step (Walsman et al. 2019, sec. IV-A). Moves are 2 degrees.
+///
+/// Signs follow REP-103: pan is positive to the left, tilt (a rotation about y, which points left) positive downwards.
+enum class Action : std::uint8_t { kPanLeft, kPanRight, kTiltUp, kTiltDown, kCollect, kRemove, kIdle };
+
+inline constexpr int kActionCount = 7;
+
+inline constexpr std::array<Action, kActionCount> kAllActions = {
+    Action::kPanLeft, Action::kPanRight, Action::kTiltUp, Action::kTiltDown,
+    Action::kCollect, Action::kRemove,   Action::kIdle};
+
+/// The name used in messages, traces and on the command line: "PAN_LEFT", ..., "IDLE".
+const char* actionName(Action action);
+
+/// @throws Error when `name` is not one of the seven, listing them.
+Action actionFromName(const std::string& name);
+
+}  // namespace early_fusion::core

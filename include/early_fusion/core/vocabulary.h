@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace early_fusion::core {
+
+/// What is still to be collected: item indices into a Vocabulary, ascending; an item requested twice stands twice.
+using Request = std::vector<int>;
+
+/// The item names that an object set or a trained policy knows, in the order of their indices.
+class Vocabulary {
+ public:
+  Vocabulary() = default;
+
+  /// @throws Error when a name is empty or stands twice.
+  explicit Vocabulary(std::vector<std::string> names);
+
+  int size() const { return static_cast<int>(names_.size()); }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// @throws Error when `item` is out of range.
+  const std::string& name(int item) const;
+
+  /// @throws Error naming `name` and the known items.
+  int index(const std::string& name) const;
+
+  /// The request that these names spell, in any order. @throws Error as index().
+  Request request(const std::vector<std::string>& names) const;
+
+  std::vector<std::string> names(const Request& request) const;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+bool operator==(const Vocabulary& a, const Vocabulary& b);
+bool operator!=(const Vocabulary& a, const Vocabulary& b);
+
+}  // namespace early_fusion::core

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "early_fusion/core/action.h"
+
+namespace early_fusion::model {
+
+/// How an action is chosen from the policy's probabilities: the likeliest, or drawn from them to explore.
+enum class ActionChoice { kArgmax, kSample };
+
+/// @throws Error when `name` is neither "argmax" nor "sample".
+ActionChoice actionChoiceFromName(const std::string& name);
+
+/// @param probabilities of the seven actions.
+/// @param seed, episode, step decide a drawn action: the same three, the same draw.
+core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::kActionCount>>& probabilities,
+                          ActionChoice choice, std::uint64_t seed, std::uint64_t episode, std::uint32_t step);
+
+}  // namespace early_fusion::model

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/action.h"
+#include "early_fusion/core/options.h"
+#include "early_fusion/core/vocabulary.h"
+#include "early_fusion/nn/parameters.h"
+#include "early_fusion/nn/weights_file.h"
+
+namespace early_fusion::model {
+
+/// How many frames the network sees: the current one and the two before it (Walsman et al. 2019, sec. III).
+inline constexpr int kHistory = 3;
+
+/// What the policy decides from. Nothing is owned.
+struct Observation {
+  /// RGB8 frames (image_size, image_size, 3), the newest first; nullptr, a black frame, where there is none yet.
+  std::array<const std::uint8_t*, kHistory> frames{};
+  const core::Request* request = nullptr;
+};
+
+/// An observation and what the policy should do there.
+struct Sample {
+  Observation observation;
+  std::array<float, core::kActionCount> target{};  ///< a distribution over actions; one-hot for a single label
+  float weight = 1.f;
+};
+
+/// config/models/*.yaml: the shape of the network.
+struct PolicyOptions {
+  std::string kind = "early_fusion";
+  int channels = 16;      ///< of every block, of the hidden layer and of the embedding; a multiple of 16 in [16, 256]
+  int fusion_block = 1;   ///< the goal joins the output of this block, [0, 3]; 0: the image itself
+  double dropout = 0.5;   ///< after the hidden layer, [0, 0.95]
+  int image_size = 128;   ///< [px], a multiple of 16
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes in it natively
+
+  core::OptionSet options();
+};
+
+using Probabilities = Eigen::Matrix<float, Eigen::Dynamic, core::kActionCount, Eigen::RowMajor>;
+
+/// A goal-conditioned policy network: images and a request in, a distribution over the seven actions out.
+///
+/// Deterministic: the same weights, samples and thread count give the same bits, and a row of predict() does not depend on the
+/// other rows. One thread at a time; it uses OpenMP inside.
+class GoalPolicy {
+ public:
+  virtual ~GoalPolicy() = default;
+
+  virtual const PolicyOptions& options() const = 0;
+  virtual const core::Vocabulary& vocabulary() const = 0;
+
+  /// Parameters and running statistics, f32, in PyTorch's names and shapes ("block1.conv.weight" OIHW, ...).
+  virtual nn::Parameters& parameters() = 0;
+  virtual const nn::Parameters& parameters() const = 0;
+
+  /// Call after writing parameters() from outside (an optimizer's step, a loaded file).
+  virtual void parametersChanged() = 0;
+
+  /// Inference with running statistics and no dropout. @param probabilities (observations, 7), rows sum to 1.
+  virtual void predict(const std::vector<Observation>& observations, Probabilities& probabilities) = 0;
+
+  /// Forward with batch statistics and dropout, then backward: fills parameters().gradients() with the gradient of the
+  /// weighted mean cross-entropy, and updates the running statistics.
+  /// @param dropout_seed decides the dropout mask. @return the loss.
+  virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
+};
+
+/// A network with fresh weights drawn from `seed` (PyTorch's default initialisation).
+/// @throws Error naming an option that is out of range.
+std::unique_ptr<GoalPolicy> makePolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary,
+                                       std::uint64_t seed);
+
+/// Reads a policy from a weights file's contents (see nn/weights_file.h); `source` names it in errors.
+/// @param precision overrides the option when not empty.
+std::unique_ptr<GoalPolicy> loadPolicy(const nn::WeightsFile& file, const std::string& source,
+                                       const std::string& precision = "");
+
+/// The policy's parameters with the metadata that loadPolicy() needs; `extra` is merged in.
+nn::WeightsFile savePolicy(const GoalPolicy& policy, const std::vector<std::pair<std::string, std::string>>& extra);
+
+}  // namespace early_fusion::model

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace early_fusion::nn {
+
+/// One named tensor inside the flat vectors of Parameters, row-major.
+struct TensorSlice {
+  std::string name;
+  std::vector<std::int64_t> shape;
+  std::size_t offset;
+  std::size_t size;
+};
+
+/// All trainable tensors of a network in one flat vector, their gradients in another, and the buffers (running
+/// statistics) in a third: an optimizer, a checkpoint and a test see vectors, a layer sees its slices.
+class Parameters {
+ public:
+  /// Adding is for construction: it moves the vectors' storage. Returns the offset.
+  std::size_t addParameter(const std::string& name, const std::vector<std::int64_t>& shape);
+  std::size_t addBuffer(const std::string& name, const std::vector<std::int64_t>& shape);
+
+  Eigen::VectorXf& values() { return values_; }
+  const Eigen::VectorXf& values() const { return values_; }
+  Eigen::VectorXf& gradients() { return gradients_; }
+  const Eigen::VectorXf& gradients() const { return gradients_; }
+  Eigen::VectorXf& buffers() { return buffers_; }
+  const Eigen::VectorXf& buffers() const { return buffers_; }
+
+  const std::vector<TensorSlice>& parameterSlices() const { return parameter_slices_; }
+  const std::vector<TensorSlice>& bufferSlices() const { return buffer_slices_; }
+
+ private:
+  Eigen::VectorXf values_;
+  Eigen::VectorXf gradients_;
+  Eigen::VectorXf buffers_;
+  std::vector<TensorSlice> parameter_slices_;
+  std::vector<TensorSlice> buffer_slices_;
+};
+
+}  // namespace early_fusion::nn

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+namespace early_fusion::sim {
+
+/// One move of a joint: 2 degrees (Walsman et al. 2019, sec. IV-A).
+inline constexpr double kStepRad = 2.0 * 3.14159265358979323846 / 180.0;
+
+/// A camera orientation on the lattice of 2-degree steps: joint angle = step count * kStepRad.
+struct Orientation {
+  int pan = 0;   ///< positive to the left
+  int tilt = 0;  ///< positive downwards
+};
+
+inline bool operator==(Orientation a, Orientation b) { return a.pan == b.pan && a.tilt == b.tilt; }
+inline bool operator!=(Orientation a, Orientation b) { return !(a == b); }
+
+/// The orientations within the joint limits: every whole step inside them.
+struct OrientationLattice {
+  Orientation lowest;
+  Orientation highest;
+
+  int panCount() const { return highest.pan - lowest.pan + 1; }
+  int tiltCount() const { return highest.tilt - lowest.tilt + 1; }
+  int size() const { return panCount() * tiltCount(); }
+  bool contains(Orientation o) const;
+  /// Row-major in tilt, in [0, size()).
+  int index(Orientation o) const { return (o.tilt - lowest.tilt) * panCount() + (o.pan - lowest.pan); }
+  Orientation at(int index) const;
+};
+
+/// A pan-tilt camera read from a URDF: any chain with a pan joint, then a tilt joint, then the optical frame.
+class CameraRig {
+ public:
+  /// @param pan_joint, tilt_joint, optical_frame names in the URDF; its root link is the world frame.
+  /// @throws Error naming the file and the joint or link that is missing, not revolute, or without limits.
+  static CameraRig load(const std::string& urdf_file, const std::string& pan_joint, const std::string& tilt_joint,
+                        const std::string& optical_frame);
+
+  const std::string& panJoint() const { return pan_joint_; }
+  const std::string& tiltJoint() const { return tilt_joint_; }
+  const std::string& opticalFrame() const { return optical_frame_; }
+  const OrientationLattice& lattice() const { return lattice_; }
+
+  /// Pose of the optical frame (REP-103: z forward, x right, y down) in the world [m].
+  Eigen::Isometry3d worldFromCamera(Orientation orientation) const;
+
+ private:
+  std::string pan_joint_;
+  std::string tilt_joint_;
+  std::string optical_frame_;
+  OrientationLattice lattice_;
+  Eigen::Isometry3d world_from_pan_;
+  Eigen::Isometry3d pan_from_tilt_;
+  Eigen::Isometry3d tilt_from_camera_;
+  Eigen::Vector3d pan_axis_;
+  Eigen::Vector3d tilt_axis_;
+};
+
+}  // namespace early_fusion::sim

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/vocabulary.h"
+#include "early_fusion/sim/textured_mesh.h"
+
+namespace early_fusion::sim {
+
+/// One type of item. The mesh stands upright on z = 0, the centre of its bounding box above the origin [m].
+struct Object {
+  std::string name;
+  TexturedMesh mesh;
+  std::vector<Eigen::Vector3d> hull;  ///< corners of the convex hull that placement and the cone use [m]
+};
+
+/// The items that can stand on the counter, in the order of their indices.
+class ObjectSet {
+ public:
+  /// Reads `objects: [{name, mesh, scale}, ...]`; mesh paths are relative to the YAML file.
+  /// @throws Error naming file, line, key and value.
+  static ObjectSet load(const std::string& yaml_file, int max_triangles);
+
+  int size() const { return static_cast<int>(objects_.size()); }
+  const Object& operator[](int item) const { return objects_[item]; }
+  const core::Vocabulary& vocabulary() const { return vocabulary_; }
+
+ private:
+  std::vector<Object> objects_;
+  core::Vocabulary vocabulary_;
+};
+
+}  // namespace early_fusion::sim

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "early_fusion/core/image.h"
+#include "early_fusion/sim/scene.h"
+
+namespace early_fusion::sim {
+
+/// Draws the world through the pan-tilt camera: perspective-correct mip-mapped textures, one light with a soft shadow,
+/// 2x2 samples a pixel. The same bits on every run, thread count and instruction set.
+///
+/// An instance belongs to one thread at a time; give every thread its own. Several may share a World.
+class Rasterizer {
+ public:
+  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], a multiple of 16.
+  Rasterizer(const World& world, int image_size);
+  ~Rasterizer();
+  Rasterizer(Rasterizer&&) noexcept;
+  Rasterizer& operator=(Rasterizer&&) noexcept;
+
+  /// Which objects stand where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
+  void setScene(const std::vector<Instance>& instances, InstanceMask present);
+
+  /// @param world_from_camera optical frame (z forward, x right, y down) in the world.
+  void render(const Eigen::Isometry3d& world_from_camera, core::Image& image);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace early_fusion::sim

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/core/vocabulary.h"
+#include "early_fusion/sim/task.h"
+#include "early_fusion/sim/world.h"
+
+namespace early_fusion::sim {
+
+/// One object on the counter, upright.
+struct Instance {
+  int item = 0;        ///< index into the object set
+  double x = 0;        ///< [m], world frame
+  double y = 0;        ///< [m], world frame
+  double theta = 0;    ///< [rad] about the world's z
+};
+
+/// Bit i is set while instance i is still on the counter.
+using InstanceMask = std::uint32_t;
+
+/// What an episode begins with, and what does not change in it.
+struct EpisodeSetup {
+  std::vector<Instance> instances;
+  core::Request request;
+  Orientation orientation;
+};
+
+Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance);
+
+/// Draws types, collision-free poses, the request and the first orientation.
+/// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
+EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random);
+
+/// The episode that a session of this seed plays as its number `episode`.
+EpisodeSetup sampleEpisode(const World& world, const Task& task, std::uint64_t seed, std::uint64_t episode);
+
+}  // namespace early_fusion::sim

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "early_fusion/core/options.h"
+
+namespace early_fusion::sim {
+
+/// config/tasks/*.yaml: how hard an episode is (Walsman et al. 2019, sec. IV-A).
+struct Task {
+  std::string name = "custom";
+  int instances = 4;  ///< objects on the counter, types drawn with repetition, at most kMaxInstances
+  int requested = 1;  ///< how many of the instances are requested
+  int steps = 48;     ///< actions in an episode
+
+  core::OptionSet options();
+  /// @throws Error when more are requested than there are.
+  void validate(const std::string& source) const;
+};
+
+inline constexpr int kMaxInstances = 32;
+
+/// @param name_or_file simple, medium, hard (config/tasks/NAME.yaml in the share folder) or a YAML file's path.
+/// @throws Error naming file, key and value, or the known names.
+Task loadTask(const std::string& name_or_file);
+
+}  // namespace early_fusion::sim

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/options.h"
+#include "early_fusion/sim/camera_rig.h"
+#include "early_fusion/sim/object_set.h"
+
+namespace early_fusion::sim {
+
+/// config/world.yaml: which files make the world, and how the camera sees it.
+struct WorldOptions {
+  std::string objects = "objects.yaml";
+  std::string kitchen_urdf = "../urdf/kitchen.urdf";
+  std::string camera_urdf = "../urdf/pan_tilt_camera.urdf";
+  std::string pan_joint = "pan_joint";
+  std::string tilt_joint = "tilt_joint";
+  std::string optical_frame = "camera_optical_frame";
+  std::string counter_link = "counter";  ///< its collision box carries the objects
+  double placement_width = 1.6;          ///< [m] along y, centred on the counter: where objects' centres may lie
+  double placement_depth = 0.5;          ///< [m] along x, likewise
+  double clearance = 0.005;              ///< [m] between two objects
+  int image_size = 128;                  ///< [px]
+  double horizontal_fov_deg = 60.0;
+  int max_triangles = 2000;
+
+  core::OptionSet options();
+};
+
+/// A mesh that never moves, in the world frame.
+struct FixedMesh {
+  std::string link;
+  TexturedMesh mesh;
+  Eigen::Isometry3d world_from_mesh;
+};
+
+/// A horizontal rectangle in the world frame on which the centres of objects may lie [m].
+struct PlacementArea {
+  double min_x, max_x, min_y, max_y, z;
+};
+
+/// Everything that stays the same from episode to episode; immutable and shared between threads.
+struct World {
+  WorldOptions options;
+  ObjectSet objects;
+  CameraRig rig;
+  std::vector<FixedMesh> kitchen;
+  PlacementArea placement;
+};
+
+/// @param yaml_file a WorldOptions file; the paths in it are relative to it.
+/// @throws Error naming file, key and value.
+std::shared_ptr<const World> loadWorld(const std::string& yaml_file);
+
+}  // namespace early_fusion::sim

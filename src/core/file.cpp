@@ -1,0 +1,107 @@
+#include "early_fusion/core/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::core {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& doing) {
+  throw Error(path + ": cannot " + doing + ": " + std::strerror(errno));
+}
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  Descriptor(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+void writeAndSync(const std::string& path, const std::string& bytes) {
+  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  if (file.get() < 0) fail(path, "write");
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(file.get(), bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "write");
+    written += static_cast<std::size_t>(count);
+  }
+  if (::fsync(file.get()) != 0) fail(path, "sync");
+}
+
+}  // namespace
+
+std::string readFile(const std::string& path) {
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || fs::is_directory(path)) {
+    if (errno == 0) errno = EISDIR;
+    fail(path, "read");
+  }
+  std::ostringstream contents;
+  contents << stream.rdbuf();
+  if (stream.bad()) fail(path, "read");
+  return contents.str();
+}
+
+void writeFileAtomically(const std::string& path, const std::string& bytes) {
+  const fs::path target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(path + ": cannot make the folder " + folder.string() + ": " + error.message());
+  if (fs::is_directory(target, error)) {
+    errno = EISDIR;
+    fail(path, "write");
+  }
+  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
+  try {
+    writeAndSync(temporary, bytes);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "rename the new file to it");
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  const Descriptor directory(folder.string(), O_RDONLY | O_DIRECTORY);
+  if (directory.get() >= 0) ::fsync(directory.get());
+}
+
+std::string resolvePath(const std::string& base_file, const std::string& path) {
+  if (fs::path(path).is_absolute()) return path;
+  return (fs::path(base_file).parent_path() / path).lexically_normal().string();
+}
+
+std::string shareFolder() {
+  const char* chosen = std::getenv("EARLY_FUSION_SHARE");
+  std::string tried;
+  for (const char* folder : {chosen, EARLY_FUSION_SOURCE_SHARE, EARLY_FUSION_INSTALL_SHARE}) {
+    if (folder == nullptr) continue;
+    if (fs::is_directory(fs::path(folder) / "config")) return folder;
+    tried += std::string(tried.empty() ? "" : ", ") + folder;
+    if (folder == chosen) break;
+  }
+  throw Error("no config/ folder in " + tried + "; set EARLY_FUSION_SHARE to the package's folder");
+}
+
+}  // namespace early_fusion::core

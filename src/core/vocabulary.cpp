@@ -1,0 +1,49 @@
+#include "early_fusion/core/vocabulary.h"
+
+#include <algorithm>
+#include <set>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::core {
+
+Vocabulary::Vocabulary(std::vector<std::string> names) : names_(std::move(names)) {
+  std::set<std::string> seen;
+  for (const std::string& name : names_) {
+    if (name.empty()) throw Error("an item's name is empty");
+    if (!seen.insert(name).second) throw Error("the item '" + name + "' is listed twice");
+  }
+}
+
+const std::string& Vocabulary::name(int item) const {
+  if (item < 0 || item >= size()) {
+    throw Error("item " + std::to_string(item) + " is not among the " + std::to_string(size()) + " known items");
+  }
+  return names_[item];
+}
+
+int Vocabulary::index(const std::string& name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found != names_.end()) return static_cast<int>(found - names_.begin());
+  std::string known;
+  for (const std::string& other : names_) known += (known.empty() ? "" : ", ") + other;
+  throw Error("unknown item '" + name + "'; known are " + known);
+}
+
+Request Vocabulary::request(const std::vector<std::string>& names) const {
+  Request request;
+  for (const std::string& name : names) request.push_back(index(name));
+  std::sort(request.begin(), request.end());
+  return request;
+}
+
+std::vector<std::string> Vocabulary::names(const Request& request) const {
+  std::vector<std::string> names;
+  for (int item : request) names.push_back(name(item));
+  return names;
+}
+
+bool operator==(const Vocabulary& a, const Vocabulary& b) { return a.names() == b.names(); }
+bool operator!=(const Vocabulary& a, const Vocabulary& b) { return !(a == b); }
+
+}  // namespace early_fusion::core
