@@ -32,7 +32,9 @@ class Episode {
 
   const EpisodeSetup& setup() const { return setup_; }
   const EpisodeState& state() const { return state_; }
-  const ConeTable& cone() const { return cone_; }
+  const ConeTable& cone() const { return *cone_; }
+  /// For who labels the episode's states after it is gone.
+  std::shared_ptr<const ConeTable> sharedCone() const { return cone_; }
 
   bool finished() const { return state_.step >= steps_; }
 
@@ -52,7 +54,7 @@ class Episode {
 
   EpisodeSetup setup_;
   EpisodeState state_;
-  ConeTable cone_;
+  std::shared_ptr<const ConeTable> cone_;
   int steps_;
   core::Request outstanding_;  // requested and not yet collected, in the scene or not
   int requested_ = 0;
