@@ -13,9 +13,9 @@ enum class Action : std::uint8_t { kPanLeft, kPanRight, kTiltUp, kTiltDown, kCol
 
 inline constexpr int kActionCount = 7;
 
-inline constexpr std::array<Action, kActionCount> kAllActions = {
-    Action::kPanLeft, Action::kPanRight, Action::kTiltUp, Action::kTiltDown,
-    Action::kCollect, Action::kRemove,   Action::kIdle};
+inline constexpr std::array<Action, kActionCount> kAllActions = {Action::kPanLeft,  Action::kPanRight, Action::kTiltUp,
+                                                                 Action::kTiltDown, Action::kCollect,  Action::kRemove,
+                                                                 Action::kIdle};
 
 /// The name used in messages, traces and on the command line: "PAN_LEFT", ..., "IDLE".
 const char* actionName(Action action);

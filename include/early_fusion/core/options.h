@@ -57,10 +57,13 @@ class OptionSet {
   std::string toYaml() const;
 
  private:
-  Option& find(const std::string& name, const std::string& source);
+  void insert(Option option);
 
   std::string title_;
   std::vector<Option> options_;
 };
+
+/// @throws Error naming `file`, and the line where it isn't YAML.
+YAML::Node loadYamlFile(const std::string& file);
 
 }  // namespace early_fusion::core
