@@ -1,0 +1,55 @@
+#pragma once
+
+#include <early_fusion/EpisodeResult.h>
+#include <early_fusion/Request.h>
+#include <early_fusion/Scene.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/JointState.h>
+
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/image.h"
+#include "early_fusion/sim/episode.h"
+#include "early_fusion/sim/world.h"
+
+namespace early_fusion::nodes {
+
+/// Which episode a step belongs to.
+struct EpisodeKey {
+  std::string task;
+  std::uint64_t seed = 0;
+  std::uint64_t episode = 0;
+};
+
+/// rgb8, rows without padding. Takes the pixels.
+sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
+
+/// The intrinsics of the rasterizer: no distortion, fx = fy, pixel centres at whole numbers (REP-104).
+sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header);
+
+sensor_msgs::JointState jointStateMessage(const sim::CameraRig& rig, sim::Orientation orientation,
+                                          const std_msgs::Header& header);
+
+Request requestMessage(const sim::Episode& episode, const EpisodeKey& key, const core::Vocabulary& vocabulary,
+                       const std_msgs::Header& header);
+
+/// @param previous_action the name of the action that led here; empty at step 0.
+Scene sceneMessage(const sim::Episode& episode, const EpisodeKey& key, int steps, const core::Vocabulary& vocabulary,
+                   const std::string& previous_action, const std_msgs::Header& header);
+
+EpisodeResult episodeResultMessage(const sim::Episode& episode, const EpisodeKey& key, const std_msgs::Header& header);
+
+/// What a Scene message says, in the simulation's own terms.
+struct SceneState {
+  std::vector<sim::Instance> instances;
+  sim::EpisodeState state;
+};
+
+/// @throws core::Error naming the field, the value and what is allowed.
+SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const sim::OrientationLattice& lattice);
+
+sim::Score score(const EpisodeResult& result);
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,36 @@
+#pragma once
+
+/// The names by which the nodes meet: relative, so that a namespace or a remapping moves them.
+///
+/// The nodes live in early_fusion::nodes, not early_fusion::ros: generated message headers say `ros::` inside namespace
+/// early_fusion and mean roscpp's.
+namespace early_fusion::nodes {
+
+// Of the simulator, or of a real camera. One stamp a step.
+inline constexpr char kImageTopic[] = "camera/image_raw";  ///< camera_info beside it
+inline constexpr char kCameraInfoTopic[] = "camera/camera_info";
+inline constexpr char kRequestTopic[] = "request";
+inline constexpr char kSceneTopic[] = "scene";
+inline constexpr char kJointStatesTopic[] = "joint_states";
+inline constexpr char kEpisodeTopic[] = "episode";
+inline constexpr char kMarkersTopic[] = "markers";
+inline constexpr char kRunEpisodesAction[] = "run_episodes";
+inline constexpr char kResetService[] = "reset";
+inline constexpr char kSetRequestService[] = "set_request";
+
+// Of the policy.
+inline constexpr char kActionTopic[] = "action";
+inline constexpr char kPolicyStatusTopic[] = "policy_status";  ///< latched
+inline constexpr char kAnnotatedImageTopic[] = "camera/image_annotated";
+inline constexpr char kLoadWeightsService[] = "load_weights";
+inline constexpr char kSaveWeightsService[] = "save_weights";
+
+// Of the trainer.
+inline constexpr char kWeightsTopic[] = "weights";    ///< latched
+inline constexpr char kExpertTopic[] = "expert";
+inline constexpr char kProgressTopic[] = "progress";  ///< latched
+
+/// A parameter that a launch file sets to "" and a node that cannot go on sets to the reason; see runNode().
+inline constexpr char kFailureParameter[] = "session_failure";
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,49 @@
+#include "early_fusion/ros/run_node.h"
+
+#include <ros/init.h>
+#include <ros/console.h>
+#include <ros/param.h>
+
+#include <cstring>
+#include <exception>
+#include <iostream>
+
+#include "early_fusion/ros/parameters.h"
+#include "early_fusion/ros/topics.h"
+
+namespace early_fusion::nodes {
+
+namespace {
+
+bool wantsHelp(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return true;
+  }
+  return false;
+}
+
+void reportFailure(const std::string& reason) {
+  ROS_FATAL("%s", reason.c_str());
+  if (::ros::isInitialized() && ::ros::param::has(kFailureParameter)) ::ros::param::set(kFailureParameter, reason);
+}
+
+}  // namespace
+
+int runNode(int argc, char** argv, const std::string& name, core::OptionSet options, const std::function<void()>& run) {
+  if (wantsHelp(argc, argv)) {
+    std::cout << name << "_node [_parameter:=value ...] [topic:=other_topic ...]\nPrivate parameters:\n"
+              << describeParameters(options);
+    return 0;
+  }
+  try {
+    ::ros::init(argc, argv, name);
+    loadParameters(options);
+    run();
+    return 0;
+  } catch (const std::exception& error) {
+    reportFailure(error.what());
+    return 1;
+  }
+}
+
+}  // namespace early_fusion::nodes
