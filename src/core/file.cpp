@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
@@ -102,6 +103,22 @@ std::string shareFolder() {
     if (folder == chosen) break;
   }
   throw Error("no config/ folder in " + tried + "; set EARLY_FUSION_SHARE to the package's folder");
+}
+
+std::string findConfig(const std::string& folder, const std::string& name_or_file) {
+  const fs::path path(name_or_file);
+  if (path.extension() == ".yaml" || path.extension() == ".yml" || path.has_parent_path()) return name_or_file;
+  const fs::path known_folder = fs::path(shareFolder()) / "config" / folder;
+  const fs::path file = known_folder / (name_or_file + ".yaml");
+  if (!name_or_file.empty() && fs::exists(file)) return file.string();
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(known_folder, error)) {
+    if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+  }
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  throw Error("'" + name_or_file + "' is none of the known " + folder + " (" + known + ") and no .yaml file");
 }
 
 }  // namespace early_fusion::core

@@ -59,5 +59,20 @@ TEST_F(FileTest, AChosenShareFolderWithoutConfigIsAnError) {
   ::unsetenv("EARLY_FUSION_SHARE");
 }
 
+TEST_F(FileTest, ConfigNamesAreFoundAndPathsAreTakenAsTheyAre) {
+  ::setenv("EARLY_FUSION_SHARE", folder_.c_str(), 1);
+  writeFileAtomically(folder_ / "config" / "tasks" / "easy.yaml", "");
+  EXPECT_EQ(findConfig("tasks", "easy"), (folder_ / "config" / "tasks" / "easy.yaml").string());
+  EXPECT_EQ(findConfig("tasks", "mine.yaml"), "mine.yaml");
+  EXPECT_EQ(findConfig("tasks", "here/mine"), "here/mine");
+  try {
+    findConfig("tasks", "esay");
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "'esay' is none of the known tasks (easy) and no .yaml file");
+  }
+  ::unsetenv("EARLY_FUSION_SHARE");
+}
+
 }  // namespace
 }  // namespace early_fusion::core

@@ -19,4 +19,9 @@ std::string resolvePath(const std::string& base_file, const std::string& path);
 /// build was configured with. @throws Error when neither has a config/ folder.
 std::string shareFolder();
 
+/// The YAML file that a user means by a name or a path: "simple" in "tasks" is config/tasks/simple.yaml of the package;
+/// what ends in .yaml or .yml or has a folder in it is a path.
+/// @throws Error listing the known names.
+std::string findConfig(const std::string& folder, const std::string& name_or_file);
+
 }  // namespace early_fusion::core

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/learning/trajectory.h"
@@ -18,78 +19,94 @@ struct TrainingOptions {
   int trajectories = 3000;             ///< in the whole session
   int trajectories_per_round = 50;     ///< new ones before the policy is trained on the window
   int window = 150;                    ///< most recent trajectories that are trained on
-  int epochs = 3;                      ///< passes over the window in a round
-  int batch_size = 32;
-  double learning_rate = 1e-4;
-  double final_learning_rate = 1e-4;   ///< at the session's end, reached along a cosine
-  int relabels = 0;                    ///< other requests that each frame is labelled for
-  bool soft_labels = false;            ///< train on all of the expert's optimal actions, not on one
-  double samples_per_frame = 1.0;      ///< share of the window's frames (and their relabels) seen in an epoch
+  double epochs = 3;                   ///< passes over the window in a round; a fraction takes a random part of it
+  int batch_size = 32;                 ///< samples
+  double learning_rate = 1e-4;         ///< at the session's start
+  double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
+  double relabel_share = 0;            ///< share of samples whose frame is labelled for another request
+  bool soft_labels = false;            ///< learn all of the expert's optimal actions, not the first of them
+  double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
   std::string exploration = "sample";  ///< how rollouts choose actions: argmax or sample
-  double beta1 = 0.9;
-  double beta2 = 0.999;
-  double epsilon = 1e-8;
-  double weight_decay = 0.0;
+  double weight_decay = 0;             ///< decoupled, a step
 
   core::OptionSet options();
 };
 
 /// What one round of training did.
 struct RoundStatistics {
-  int round = 0;
-  double loss = 0;           ///< mean over the round's training steps
-  double learning_rate = 0;  ///< at its end
-  double f1 = 0;             ///< mean over the round's new trajectories, as they were rolled out
-  double agreement = 0;      ///< likewise
+  std::uint64_t round = 0;         ///< from 1
+  std::uint64_t trajectories = 0;  ///< seen so far
+  double loss = 0;                 ///< mean over the round's training steps
+  double learning_rate = 0;
+  double f1 = 0;         ///< mean over the round's new trajectories, as they were rolled out
+  double agreement = 0;  ///< likewise
 };
 
-/// Aggregates labelled trajectories and trains a policy on the most recent ones: the learner of the imitation loop.
+/// Aggregates labelled trajectories and trains a policy on the most recent ones: the learner of the imitation loop
+/// (Walsman et al. 2019, sec. IV-C, after Ross et al. 2011).
 ///
-/// Knows nothing of where trajectories come from. Deterministic: the same options, seed and trajectories give the same
-/// weights; checkpoints go on bit for bit.
+/// Knows nothing of where trajectories come from. The same options, seed and trajectories give the same weights.
 class Trainer {
  public:
   Trainer(const model::PolicyOptions& policy, const TrainingOptions& training, const core::Vocabulary& vocabulary,
           std::uint64_t seed);
 
-  /// Goes on from a checkpoint. @throws Error naming `path` and what is wrong with it.
-  static std::unique_ptr<Trainer> resume(const std::string& path);
-
-  /// Everything that resume() needs: weights, optimizer, window, counters; `extra` metadata is kept beside it.
-  void saveCheckpoint(const std::string& path,
-                      const std::vector<std::pair<std::string, std::string>>& extra = {}) const;
-
-  /// Writes the policy alone, for acting. @param extra more metadata.
-  nn::WeightsFile weights(const std::vector<std::pair<std::string, std::string>>& extra = {}) const;
-
-  /// Episodes must come in order: number trajectoriesSeen() next.
+  /// The trajectory of episode number trajectoriesSeen(): they must come in order.
   void add(Trajectory trajectory);
 
+  bool roundDue() const { return new_trajectories_ >= newInRound(); }
+  bool finished() const {
+    return trajectoriesSeen() >= static_cast<std::uint64_t>(options_.trajectories) && !roundDue();
+  }
+
+  /// How many trajectories are still to be added before the next round.
+  int missingInRound() const { return newInRound() - new_trajectories_; }
+
+  /// Trains on the window. Call when roundDue(). @param progress told after every batch which share is done.
+  RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
+
+  /// The policy with everything else that restore() needs. The window's frames and labels are not in it: the actions
+  /// are, and a replay of them gives back the rest.
+  nn::WeightsFile save() const;
+
+  /// Plays episodes again with the actions that were taken in them: actions[i] is of episodes[i].
+  using Replay = std::function<std::vector<Trajectory>(const std::vector<std::int64_t>& episodes,
+                                                       const std::vector<std::vector<core::Action>>& actions)>;
+
+  /// Goes on from what save() gave, bit for bit.
+  /// @throws Error naming `source` and the tensor or key that is missing or doesn't fit.
+  void restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay);
+
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
-  bool roundDue() const;
-  bool finished() const;
-
-  /// Trains on the window. @param progress called after every batch with the share of the round that is done.
-  RoundStatistics trainRound(const std::function<void(double)>& progress = {});
-
   const TrainingOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }
   model::GoalPolicy& policy() { return *policy_; }
   const model::GoalPolicy& policy() const { return *policy_; }
-  const std::deque<Trajectory>& windowTrajectories() const { return window_; }
+  const std::deque<Trajectory>& window() const { return window_; }
 
  private:
+  /// A frame of the window: window_[trajectory].steps[step].
+  struct FrameIndex {
+    std::uint32_t trajectory;
+    std::uint32_t step;
+  };
+
+  int newInRound() const;
   double learningRate() const;
-  double trainBatch(const std::vector<model::Sample>& samples);
+  std::vector<FrameIndex> drawFrames() const;
+  model::Sample sample(FrameIndex index, core::Random& random) const;
+  std::array<float, core::kActionCount> actionWeights() const;
+  RoundStatistics rolloutStatistics() const;
 
   TrainingOptions options_;
   std::uint64_t seed_;
   std::unique_ptr<model::GoalPolicy> policy_;
-  std::unique_ptr<nn::Adam> adam_;
+  nn::Adam adam_;
   std::deque<Trajectory> window_;
+  std::array<float, core::kActionCount> action_weights_{};
+  int new_trajectories_ = 0;
   std::uint64_t trajectories_seen_ = 0;
-  std::uint64_t round_ = 0;
-  std::uint64_t training_steps_ = 0;
+  std::uint64_t rounds_ = 0;
 };
 
 }  // namespace early_fusion::learning

@@ -23,7 +23,7 @@ struct TrajectoryStep {
   std::vector<std::uint8_t> frame;  ///< RGB8 (image_size, image_size, 3)
   core::Action action;              ///< what the policy did
   Label label;                      ///< for the request that it was given
-  std::vector<Label> relabels;      ///< for other requests at the same frame
+  Label relabel;  ///< for another request at the same frame: its own when there is nothing else to ask for
 };
 
 struct Trajectory {
@@ -39,21 +39,30 @@ struct Trajectory {
 /// trainer node, which sees the states as messages.
 class TrajectoryRecorder {
  public:
-  /// @param relabels how many other requests each frame is labelled for; they are drawn from (seed, episode, step).
+  /// @param seed of the session: with `episode` and the step it decides which other request a frame is labelled for.
   TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone, int relabels);
+                     std::shared_ptr<const sim::ConeTable> cone);
 
-  /// Labels the state in which `action` was taken and keeps it.
-  /// @return the step, valid until the next call.
-  const TrajectoryStep& record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame, core::Action action);
+  /// Labels a state and keeps it; states must come in order from step 0.
+  /// @return the step, valid until the next call. Its action is IDLE until setAction().
+  const TrajectoryStep& record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame);
 
+  /// What the policy did in the state recorded last.
+  void setAction(core::Action action) { trajectory_.steps.back().action = action; }
+
+  const Trajectory& trajectory() const { return trajectory_; }
+
+  /// Hands the trajectory over; the recorder is empty afterwards.
   Trajectory finish(const sim::Score& score);
 
  private:
+  Label label(const sim::EpisodeState& state, const core::Request& request) const;
+  core::Request drawRequest(const sim::EpisodeState& state);
+
   std::uint64_t seed_;
   std::vector<sim::Instance> instances_;
   std::shared_ptr<const sim::ConeTable> cone_;
-  int relabels_;
+  int requested_ = 0;  // instances requested at step 0
   Trajectory trajectory_;
 };
 

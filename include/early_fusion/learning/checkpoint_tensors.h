@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/action.h"
+#include "early_fusion/nn/weights_file.h"
+
+namespace early_fusion::learning {
+
+// How a checkpoint holds what is not a network's parameter. Every load throws core::Error naming `source`, the tensor
+// and what is wrong with it: missing, of another type, or of another size.
+
+nn::StoredTensor storeFloats(const Eigen::VectorXf& values);
+Eigen::VectorXf loadFloats(const nn::WeightsFile& file, const std::string& name, Eigen::Index size,
+                           const std::string& source);
+
+nn::StoredTensor storeIntegers(const std::vector<std::int64_t>& values);
+std::vector<std::int64_t> loadIntegers(const nn::WeightsFile& file, const std::string& name, const std::string& source);
+
+nn::StoredTensor storeBytes(const std::vector<std::uint8_t>& values, const std::vector<std::int64_t>& shape);
+
+/// A U8 tensor (trajectories, steps) of actions.
+std::vector<std::vector<core::Action>> loadActions(const nn::WeightsFile& file, const std::string& name,
+                                                   const std::string& source);
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "early_fusion/learning/rollout.h"
+
+namespace early_fusion::learning {
+
+/// The seed of the episodes that scores are reported on; no training session may use it.
+inline constexpr std::uint64_t kHeldOutSeed = 20191104;
+
+struct EpisodeOutcome {
+  std::uint64_t episode = 0;
+  sim::Score score;
+  double agreement = 0;
+};
+
+/// Means over episodes (Walsman et al. 2019, sec. IV-B).
+struct Evaluation {
+  std::string policy;  ///< a weights file, or expert, random, idle
+  std::string task;
+  std::uint64_t seed = 0;
+  std::vector<EpisodeOutcome> outcomes;
+
+  double f1() const;
+  double precision() const;
+  double recall() const;
+  double agreement() const;
+
+  /// {"policy", "task", "seed", "episodes", "f1", "precision", "recall", "agreement", "per_episode": [...]}.
+  std::string toJson() const;
+
+  /// "F1 0.913  precision 0.940  recall 0.902  agreement 0.881  (500 episodes)".
+  std::string summary() const;
+};
+
+/// Plays the first `episodes` episodes of the runner's task and seed.
+/// @param progress told after each episode how many are done.
+Evaluation evaluate(RolloutRunner& runner, Agent& agent, int episodes, const std::string& policy_name,
+                    const std::function<void(int done)>& progress = {});
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace early_fusion::learning {
+
+/// Where a training session stands.
+struct Progress {
+  std::string stage = "training";  ///< training, evaluation or finished
+  std::uint64_t trajectories = 0;
+  std::uint64_t trajectories_total = 0;
+  std::uint64_t evaluated = 0;  ///< held-out episodes played so far
+  double f1 = 0;                ///< mean over the last round's rollouts
+  double agreement = 0;         ///< likewise
+  double loss = 0;              ///< mean over the last round's training steps
+  double trajectories_per_hour = 0;
+  double elapsed_sec = 0;  ///< over all runs of the session
+  double remaining_sec = 0;
+
+  /// One line for a terminal: "1250/3000 (42%)  F1 0.713  agreement 0.802  loss 0.534  6100 trajectories/h  12:18
+  /// left".
+  std::string line() const;
+};
+
+/// "0:07", "12:18", "1:02:33".
+std::string clockText(double seconds);
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "early_fusion/learning/agent.h"
+#include "early_fusion/learning/trajectory.h"
+#include "early_fusion/sim/rasterizer.h"
+
+namespace early_fusion::learning {
+
+/// Rolls episodes out in this process: a few in lockstep, drawn in parallel and decided on as one batch.
+///
+/// The trajectories are the same bits for any number of threads and episodes in lockstep.
+class RolloutRunner {
+ public:
+  /// `world` must outlive the runner. @param seed of the session: (seed, number) is an episode.
+  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed);
+
+  const sim::Task& task() const { return task_; }
+  std::uint64_t seed() const { return seed_; }
+
+  /// Plays the episodes and hands over each trajectory, labelled, in the order given. Frames are empty when neither the
+  /// agent nor the caller needs them.
+  /// @param keep_frames whether the trajectories carry their frames.
+  void run(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
+           const std::function<void(Trajectory)>& finished);
+
+  /// The same for episodes first, ..., first + count - 1.
+  void run(std::uint64_t first, int count, Agent& agent, bool keep_frames,
+           const std::function<void(Trajectory)>& finished);
+
+  /// Called after every step of every episode with the state before it, for whoever wants to watch.
+  using Observer = std::function<void(std::uint64_t episode, const sim::Episode& before, const TrajectoryStep& step)>;
+  void setObserver(Observer observer) { observer_ = std::move(observer); }
+
+ private:
+  struct Seat;  // one of the episodes in lockstep
+
+  void playTogether(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
+                    const std::function<void(Trajectory)>& finished);
+  void observe(Seat& seat, bool draw);
+
+  const sim::World& world_;
+  sim::Task task_;
+  std::uint64_t seed_;
+  std::vector<sim::Rasterizer> rasterizers_;  // one a seat: its shadow map lasts while its scene does
+  Observer observer_;
+};
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,86 @@
+#include "early_fusion/learning/agent.h"
+
+#include <map>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/expert/greedy_expert.h"
+
+namespace early_fusion::learning {
+
+namespace {
+
+class PolicyAgent : public Agent {
+ public:
+  PolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed)
+      : policy_(policy), choice_(choice), seed_(seed) {}
+
+  void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) override {
+    observations_.clear();
+    for (const Situation& situation : situations) observations_.push_back(situation.observation);
+    policy_.predict(observations_, probabilities_);
+    for (std::size_t i = 0; i < situations.size(); ++i) {
+      actions[i] = model::chooseAction(probabilities_.row(i), choice_, seed_, situations[i].episode,
+                                       situations[i].state->state().step);
+    }
+  }
+
+  bool needsFrames() const override { return true; }
+
+ private:
+  model::GoalPolicy& policy_;
+  model::ActionChoice choice_;
+  std::uint64_t seed_;
+  std::vector<model::Observation> observations_;
+  model::Probabilities probabilities_;
+};
+
+/// An agent that treats every situation on its own.
+class SimpleAgent : public Agent {
+ public:
+  using Rule = std::function<core::Action(const Situation&)>;
+  explicit SimpleAgent(Rule rule) : rule_(std::move(rule)) {}
+
+  void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) override {
+    for (std::size_t i = 0; i < situations.size(); ++i) actions[i] = rule_(situations[i]);
+  }
+
+ private:
+  Rule rule_;
+};
+
+}  // namespace
+
+std::unique_ptr<Agent> makePolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed) {
+  return std::make_unique<PolicyAgent>(policy, choice, seed);
+}
+
+std::unique_ptr<Agent> makeExpertAgent() {
+  return std::make_unique<SimpleAgent>([](const Situation& situation) {
+    const sim::Episode& episode = *situation.state;
+    const sim::EpisodeState& state = episode.state();
+    return expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request);
+  });
+}
+
+std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed) {
+  return std::make_unique<SimpleAgent>([seed](const Situation& situation) {
+    const auto step = static_cast<std::uint64_t>(situation.state->state().step);
+    core::Random random(seed, {core::kRandomPolicyStream, situation.episode, step});
+    return core::kAllActions[random.below(core::kActionCount)];
+  });
+}
+
+std::unique_ptr<Agent> makeIdleAgent() {
+  return std::make_unique<SimpleAgent>([](const Situation&) { return core::Action::kIdle; });
+}
+
+std::unique_ptr<Agent> makeReplayAgent(std::vector<std::int64_t> episodes,
+                                       std::vector<std::vector<core::Action>> actions) {
+  std::map<std::uint64_t, std::vector<core::Action>> by_episode;
+  for (std::size_t i = 0; i < episodes.size(); ++i) by_episode[episodes[i]] = std::move(actions[i]);
+  return std::make_unique<SimpleAgent>([by_episode = std::move(by_episode)](const Situation& situation) {
+    return by_episode.at(situation.episode).at(situation.state->state().step);
+  });
+}
+
+}  // namespace early_fusion::learning

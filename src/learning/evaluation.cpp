@@ -1,0 +1,76 @@
+#include "early_fusion/learning/evaluation.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace early_fusion::learning {
+
+namespace {
+
+template <class Measure>
+double mean(const std::vector<EpisodeOutcome>& outcomes, Measure measure) {
+  double sum = 0;
+  for (const EpisodeOutcome& outcome : outcomes) sum += measure(outcome);
+  return outcomes.empty() ? 0 : sum / static_cast<double>(outcomes.size());
+}
+
+}  // namespace
+
+double Evaluation::f1() const {
+  return mean(outcomes, [](const EpisodeOutcome& outcome) { return outcome.score.f1; });
+}
+
+double Evaluation::precision() const {
+  return mean(outcomes, [](const EpisodeOutcome& outcome) { return outcome.score.precision; });
+}
+
+double Evaluation::recall() const {
+  return mean(outcomes, [](const EpisodeOutcome& outcome) { return outcome.score.recall; });
+}
+
+double Evaluation::agreement() const {
+  return mean(outcomes, [](const EpisodeOutcome& outcome) { return outcome.agreement; });
+}
+
+std::string Evaluation::toJson() const {
+  nlohmann::ordered_json json;
+  json["policy"] = policy;
+  json["task"] = task;
+  json["seed"] = seed;
+  json["episodes"] = outcomes.size();
+  json["f1"] = f1();
+  json["precision"] = precision();
+  json["recall"] = recall();
+  json["agreement"] = agreement();
+  json["per_episode"] = nlohmann::ordered_json::array();
+  for (const EpisodeOutcome& outcome : outcomes) {
+    json["per_episode"].push_back({{"episode", outcome.episode},
+                                   {"f1", outcome.score.f1},
+                                   {"precision", outcome.score.precision},
+                                   {"recall", outcome.score.recall},
+                                   {"agreement", outcome.agreement}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string Evaluation::summary() const {
+  char text[160];
+  std::snprintf(text, sizeof(text), "F1 %.3f  precision %.3f  recall %.3f  agreement %.3f  (%zu episodes)", f1(),
+                precision(), recall(), agreement(), outcomes.size());
+  return text;
+}
+
+Evaluation evaluate(RolloutRunner& runner, Agent& agent, int episodes, const std::string& policy_name,
+                    const std::function<void(int)>& progress) {
+  Evaluation evaluation;
+  evaluation.policy = policy_name;
+  evaluation.task = runner.task().name;
+  evaluation.seed = runner.seed();
+  runner.run(0, episodes, agent, false, [&](Trajectory trajectory) {
+    evaluation.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+    if (progress) progress(static_cast<int>(evaluation.outcomes.size()));
+  });
+  return evaluation;
+}
+
+}  // namespace early_fusion::learning

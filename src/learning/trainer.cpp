@@ -1,0 +1,200 @@
+#include "early_fusion/learning/trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/random.h"
+#include "early_fusion/learning/checkpoint_tensors.h"
+
+namespace early_fusion::learning {
+
+core::OptionSet TrainingOptions::options() {
+  core::OptionSet set("training");
+  set.add("trajectories", trajectories, 1, 100000000, "trajectories", "how many to roll out and learn from in all");
+  set.add("trajectories_per_round", trajectories_per_round, 1, 100000, "trajectories",
+          "new ones before the policy is trained");
+  set.add("window", window, 1, 100000, "trajectories", "the most recent ones that are trained on");
+  set.add("epochs", epochs, 0.01, 100, "passes", "over the window in a round; a fraction takes a random part of it");
+  set.add("batch_size", batch_size, 1, 1024, "samples", "in a training step");
+  set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
+  set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
+  set.add("relabel_share", relabel_share, 0, 1, "", "share of samples whose frame is labelled for another request");
+  set.add("soft_labels", soft_labels, "learn all of the expert's optimal actions instead of the first of them");
+  set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
+  set.addChoice("exploration", exploration, {"argmax", "sample"}, "how rollouts choose among the probabilities");
+  set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
+  return set;
+}
+
+namespace {
+
+constexpr char kFirstMoment[] = "checkpoint.adam.first_moment";
+constexpr char kSecondMoment[] = "checkpoint.adam.second_moment";
+constexpr char kEpisodes[] = "checkpoint.window.episodes";  // (trajectories)
+constexpr char kActions[] = "checkpoint.window.actions";    // (trajectories, steps)
+constexpr char kCounters[] = "checkpoint.counters";         // trajectories, new ones, rounds, Adam's steps
+
+nn::AdamOptions adamOptions(const TrainingOptions& options) {
+  nn::AdamOptions adam;
+  adam.weight_decay = options.weight_decay;
+  return adam;
+}
+
+}  // namespace
+
+Trainer::Trainer(const model::PolicyOptions& policy, const TrainingOptions& training,
+                 const core::Vocabulary& vocabulary, std::uint64_t seed)
+    : options_(training),
+      seed_(seed),
+      policy_(model::makePolicy(policy, vocabulary, seed)),
+      adam_(policy_->parameters().values().size(), adamOptions(training)) {}
+
+void Trainer::add(Trajectory trajectory) {
+  window_.push_back(std::move(trajectory));
+  while (static_cast<int>(window_.size()) > options_.window) window_.pop_front();
+  ++trajectories_seen_;
+  ++new_trajectories_;
+}
+
+int Trainer::newInRound() const {
+  const auto before_round = static_cast<std::int64_t>(trajectories_seen_) - new_trajectories_;
+  return static_cast<int>(
+      std::min<std::int64_t>(options_.trajectories_per_round, options_.trajectories - before_round));
+}
+
+double Trainer::learningRate() const {
+  const double done = std::min(1.0, static_cast<double>(trajectories_seen_) / options_.trajectories);
+  const double cosine = 0.5 * (1 + std::cos(M_PI * done));
+  return options_.final_learning_rate + (options_.learning_rate - options_.final_learning_rate) * cosine;
+}
+
+std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
+  std::vector<FrameIndex> window_frames;
+  for (std::uint32_t t = 0; t < window_.size(); ++t) {
+    for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) window_frames.push_back({t, s});
+  }
+  std::vector<FrameIndex> drawn;
+  double epochs_left = options_.epochs;
+  for (std::uint64_t epoch = 0; epochs_left > 0; ++epoch, epochs_left -= 1) {
+    std::vector<FrameIndex> order = window_frames;
+    core::Random(seed_, {core::kShuffleStream, rounds_, epoch}).shuffle(order);
+    const auto count = static_cast<std::size_t>(std::lround(std::min(1.0, epochs_left) * order.size()));
+    drawn.insert(drawn.end(), order.begin(), order.begin() + count);
+  }
+  return drawn;
+}
+
+std::array<float, core::kActionCount> Trainer::actionWeights() const {
+  std::array<double, core::kActionCount> counts{};
+  double total = 0;
+  for (const Trajectory& trajectory : window_) {
+    for (const TrajectoryStep& step : trajectory.steps) {
+      counts[static_cast<int>(step.label.action)] += 1 - options_.relabel_share;
+      counts[static_cast<int>(step.relabel.action)] += options_.relabel_share;
+      total += 1;
+    }
+  }
+  std::array<float, core::kActionCount> weights{};
+  for (int a = 0; a < core::kActionCount; ++a) {
+    weights[a] = static_cast<float>(std::pow(std::max(counts[a], 1.0) / total, -options_.balance));
+  }
+  return weights;
+}
+
+model::Sample Trainer::sample(FrameIndex index, core::Random& random) const {
+  const Trajectory& trajectory = window_[index.trajectory];
+  const TrajectoryStep& step = trajectory.steps[index.step];
+  const Label& label = random.uniform() < options_.relabel_share ? step.relabel : step.label;
+  model::Sample sample;
+  for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
+    sample.observation.frames[age] = trajectory.steps[index.step - age].frame.data();
+  }
+  sample.observation.request = &label.request;
+  sample.weight = action_weights_[static_cast<int>(label.action)];
+  if (!options_.soft_labels) {
+    sample.target[static_cast<int>(label.action)] = 1.f;
+    return sample;
+  }
+  int optimal = 0;
+  for (core::Action action : core::kAllActions) optimal += expert::contains(label.optimal, action);
+  for (core::Action action : core::kAllActions) {
+    if (expert::contains(label.optimal, action)) sample.target[static_cast<int>(action)] = 1.f / optimal;
+  }
+  return sample;
+}
+
+RoundStatistics Trainer::rolloutStatistics() const {
+  RoundStatistics statistics;
+  statistics.round = rounds_ + 1;
+  statistics.trajectories = trajectories_seen_;
+  const std::size_t count = std::min<std::size_t>(new_trajectories_, window_.size());
+  for (std::size_t i = window_.size() - count; i < window_.size(); ++i) {
+    statistics.f1 += window_[i].score.f1 / count;
+    statistics.agreement += window_[i].agreement() / count;
+  }
+  return statistics;
+}
+
+RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress) {
+  RoundStatistics statistics = rolloutStatistics();
+  statistics.learning_rate = learningRate();
+  action_weights_ = actionWeights();
+  const std::vector<FrameIndex> frames = drawFrames();
+  core::Random label_random(seed_, {core::kRelabelStream, rounds_});
+  std::vector<model::Sample> batch;
+  std::uint64_t steps = 0;
+  for (std::size_t first = 0; first < frames.size(); first += batch.size()) {
+    const std::size_t last = std::min(frames.size(), first + options_.batch_size);
+    batch.clear();
+    for (std::size_t i = first; i < last; ++i) batch.push_back(sample(frames[i], label_random));
+    const std::uint64_t dropout_seed = core::Random(seed_, {core::kDropoutStream, rounds_, first}).next();
+    statistics.loss += policy_->lossAndGradients(batch, dropout_seed);
+    adam_.step(policy_->parameters().values(), policy_->parameters().gradients(), statistics.learning_rate);
+    policy_->parametersChanged();
+    ++steps;
+    if (progress) progress(static_cast<double>(last) / frames.size());
+  }
+  statistics.loss /= std::max<std::uint64_t>(steps, 1);
+  ++rounds_;
+  new_trajectories_ = 0;
+  return statistics;
+}
+
+nn::WeightsFile Trainer::save() const {
+  nn::WeightsFile file = model::savePolicy(*policy_, {});
+  const auto steps = window_.empty() ? 0 : static_cast<std::int64_t>(window_.front().steps.size());
+  std::vector<std::int64_t> episodes;
+  std::vector<std::uint8_t> actions;
+  for (const Trajectory& trajectory : window_) {
+    episodes.push_back(static_cast<std::int64_t>(trajectory.episode));
+    for (const TrajectoryStep& step : trajectory.steps) actions.push_back(static_cast<std::uint8_t>(step.action));
+  }
+  file.tensors[kFirstMoment] = storeFloats(adam_.firstMoment());
+  file.tensors[kSecondMoment] = storeFloats(adam_.secondMoment());
+  file.tensors[kEpisodes] = storeIntegers(episodes);
+  file.tensors[kActions] = storeBytes(actions, {static_cast<std::int64_t>(episodes.size()), steps});
+  file.tensors[kCounters] = storeIntegers({static_cast<std::int64_t>(trajectories_seen_), new_trajectories_,
+                                           static_cast<std::int64_t>(rounds_), adam_.stepCount()});
+  return file;
+}
+
+void Trainer::restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay) {
+  const std::vector<std::int64_t> counters = loadIntegers(file, kCounters, source);
+  if (counters.size() != 4 || *std::min_element(counters.begin(), counters.end()) < 0) {
+    throw core::Error(source + ": tensor " + kCounters + " should hold 4 counts; the file is damaged");
+  }
+  policy_ = model::loadPolicy(file, source, policy_->options().precision);
+  const Eigen::Index size = policy_->parameters().values().size();
+  adam_.restore(counters[3], loadFloats(file, kFirstMoment, size, source),
+                loadFloats(file, kSecondMoment, size, source));
+  trajectories_seen_ = counters[0];
+  new_trajectories_ = static_cast<int>(counters[1]);
+  rounds_ = counters[2];
+  std::vector<Trajectory> trajectories =
+      replay(loadIntegers(file, kEpisodes, source), loadActions(file, kActions, source));
+  window_.assign(std::make_move_iterator(trajectories.begin()), std::make_move_iterator(trajectories.end()));
+}
+
+}  // namespace early_fusion::learning
