@@ -1,0 +1,114 @@
+#include "early_fusion/expert/greedy_expert.h"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdlib>
+
+namespace early_fusion::expert {
+
+namespace {
+
+using core::Action;
+
+constexpr ActionSet bit(Action action) { return static_cast<ActionSet>(1u << static_cast<int>(action)); }
+
+/// Where several actions are equally good, the first of these is the label.
+constexpr std::array<Action, 6> kLabelOrder = {Action::kCollect,  Action::kRemove, Action::kPanLeft,
+                                               Action::kPanRight, Action::kTiltUp, Action::kTiltDown};
+
+struct Search {
+  int steps = INT_MAX;    ///< of the cheapest way; INT_MAX when there is none
+  ActionSet optimal = 0;  ///< every action that starts a way that costs `steps`
+};
+
+class Searcher {
+ public:
+  Searcher(const sim::ConeTable& cone, sim::InstanceMask present, sim::Orientation from)
+      : cone_(cone), present_(present), from_(from), nearest_now_(cone.nearest(from, present)) {}
+
+  /// The cheapest ways to `instance`, where they cost no more than `best`, added to it; else `best` stays as it is.
+  void search(int instance, Search& best) const {
+    for (sim::Orientation to : cone_.orientationsOf(instance)) {
+      const int moves = std::abs(to.pan - from_.pan) + std::abs(to.tilt - from_.tilt);
+      if (moves + 1 > best.steps) continue;
+      int occluders = 0;
+      bool occluded_by_nearest_now = false;
+      for (std::uint8_t other : cone_.at(to)) {
+        if (other == instance) break;
+        if (!((present_ >> other) & 1u)) continue;
+        ++occluders;
+        occluded_by_nearest_now |= other == nearest_now_;
+      }
+      const int steps = moves + occluders + 1;
+      if (steps > best.steps) continue;
+      if (steps < best.steps) best = {steps, 0};
+      best.optimal |= firstActions(to, occluded_by_nearest_now, steps);
+    }
+  }
+
+ private:
+  /// An occluder can be removed from wherever it is the nearest: here too, if it must go anyway. It is never a
+  /// requested one, which would itself be cheaper to reach.
+  ActionSet firstActions(sim::Orientation to, bool occluded_by_nearest_now, int steps) const {
+    if (steps == 1) return bit(Action::kCollect);
+    ActionSet actions = occluded_by_nearest_now ? bit(Action::kRemove) : ActionSet{0};
+    if (to.pan > from_.pan) actions |= bit(Action::kPanLeft);
+    if (to.pan < from_.pan) actions |= bit(Action::kPanRight);
+    if (to.tilt < from_.tilt) actions |= bit(Action::kTiltUp);
+    if (to.tilt > from_.tilt) actions |= bit(Action::kTiltDown);
+    return actions;
+  }
+
+  const sim::ConeTable& cone_;
+  sim::InstanceMask present_;
+  sim::Orientation from_;
+  int nearest_now_;
+};
+
+bool isWanted(const std::vector<sim::Instance>& instances, std::size_t i, sim::InstanceMask present,
+              const core::Request& request) {
+  return ((present >> i) & 1u) && std::find(request.begin(), request.end(), instances[i].item) != request.end();
+}
+
+Action firstInLabelOrder(ActionSet optimal) {
+  for (Action action : kLabelOrder) {
+    if (contains(optimal, action)) return action;
+  }
+  return Action::kIdle;
+}
+
+}  // namespace
+
+core::Action label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
+                   sim::Orientation orientation, const core::Request& request, ActionSet* optimal) {
+  const Searcher searcher(cone, present, orientation);
+  Search best;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (isWanted(instances, i, present, request)) searcher.search(static_cast<int>(i), best);
+  }
+  if (best.optimal == 0) best.optimal = bit(Action::kIdle);
+  if (optimal != nullptr) *optimal = best.optimal;
+  return firstInLabelOrder(best.optimal);
+}
+
+Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
+                sim::Orientation orientation, const core::Request& request) {
+  Decision decision;
+  decision.action = label(cone, instances, present, orientation, request, &decision.optimal);
+  const Searcher searcher(cone, present, orientation);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (!isWanted(instances, i, present, request)) continue;
+    Search alone;
+    searcher.search(static_cast<int>(i), alone);
+    if (alone.optimal != 0) decision.costs.push_back({static_cast<int>(i), alone.steps});
+  }
+  return decision;
+}
+
+Decision decide(const sim::Episode& episode) {
+  const sim::EpisodeState& state = episode.state();
+  return decide(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request);
+}
+
+}  // namespace early_fusion::expert

@@ -1,0 +1,105 @@
+#include "early_fusion/sim/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/sim/placed_hull.h"
+
+namespace early_fusion::sim {
+
+namespace {
+
+constexpr int kTriesPerInstance = 200;
+constexpr int kTriesPerScene = 50;
+
+/// Objects that stand already, and whether one more may stand beside them.
+class CounterTop {
+ public:
+  explicit CounterTop(const World& world) : world_(world) {}
+
+  /// Keeps the instance when it is clear of all others.
+  bool place(const Instance& instance) {
+    PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
+    const double clearance = world_.options.clearance;
+    for (const PlacedHull& other : hulls_) {
+      const double apart = (hull.center() - other.center()).norm() - hull.radius() - other.radius();
+      if (apart < clearance && hull.distanceTo(other) < std::max(clearance, kTouching)) return false;
+    }
+    hulls_.push_back(std::move(hull));
+    return true;
+  }
+
+ private:
+  static constexpr double kTouching = 1e-6;  // [m]; with no clearance asked for, objects still must not overlap
+
+  const World& world_;
+  std::vector<PlacedHull> hulls_;
+};
+
+/// Places as many of `items` as fit, in their order.
+std::vector<Instance> placeAll(const World& world, const std::vector<int>& items, core::Random& random) {
+  const PlacementArea& area = world.placement;
+  CounterTop counter(world);
+  std::vector<Instance> placed;
+  for (int item : items) {
+    bool fits = false;
+    for (int i = 0; i < kTriesPerInstance && !fits; ++i) {
+      Instance instance;
+      instance.item = item;
+      instance.x = random.uniform(area.min_x, area.max_x);
+      instance.y = random.uniform(area.min_y, area.max_y);
+      instance.theta = random.uniform(-M_PI, M_PI);
+      fits = counter.place(instance);
+      if (fits) placed.push_back(instance);
+    }
+    if (!fits) break;
+  }
+  return placed;
+}
+
+std::vector<Instance> sampleInstances(const World& world, const Task& task, core::Random& random) {
+  std::size_t most = 0;
+  for (int i = 0; i < kTriesPerScene; ++i) {
+    std::vector<int> items(task.instances);
+    for (int& item : items) item = random.below(world.objects.size());
+    std::vector<Instance> placed = placeAll(world, items, random);
+    if (placed.size() == items.size()) return placed;
+    most = std::max(most, placed.size());
+  }
+  std::ostringstream text;
+  text << "only " << most << " of the " << task.instances << " instances of task '" << task.name << "' fit on the "
+       << world.options.placement_width << " x " << world.options.placement_depth << " m of the counter, "
+       << world.options.clearance
+       << " m apart; ask for fewer instances, or raise placement_width or placement_depth, or lower clearance";
+  throw core::Error(text.str());
+}
+
+}  // namespace
+
+Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance) {
+  return Eigen::Translation3d(instance.x, instance.y, world.placement.z) *
+         Eigen::AngleAxisd(instance.theta, Eigen::Vector3d::UnitZ());
+}
+
+EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random) {
+  task.validate("task '" + task.name + "'");
+  EpisodeSetup setup;
+  setup.instances = sampleInstances(world, task, random);
+  std::vector<int> order(task.instances);
+  for (int i = 0; i < task.instances; ++i) order[i] = i;
+  random.shuffle(order);
+  for (int i = 0; i < task.requested; ++i) setup.request.push_back(setup.instances[order[i]].item);
+  std::sort(setup.request.begin(), setup.request.end());
+  const OrientationLattice& lattice = world.rig.lattice();
+  setup.orientation = lattice.at(random.below(lattice.size()));
+  return setup;
+}
+
+EpisodeSetup sampleEpisode(const World& world, const Task& task, std::uint64_t seed, std::uint64_t episode) {
+  core::Random random(seed, {core::kEpisodeStream, episode});
+  return sampleEpisode(world, task, random);
+}
+
+}  // namespace early_fusion::sim
