@@ -67,10 +67,6 @@ SessionOptions resolveSessionOptions(const std::vector<std::pair<std::string, st
   return options;
 }
 
-std::shared_ptr<const sim::World> loadSessionWorld(const SessionOptions& options) {
-  return sim::loadWorld(options.world.empty() ? core::shareFolder() + "/config/world.yaml" : options.world);
-}
-
 TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const sim::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");

@@ -25,10 +25,12 @@ core::Image annotate(const core::Image& image, const Annotation& annotation, int
   const cv::Mat source(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
   cv::Mat picture(result.height, result.width, CV_8UC3, result.rgb.data());
   cv::resize(source, picture, picture.size(), 0, 0, cv::INTER_NEAREST);
-  const cv::Point centre(result.width / 2, result.height / 2);
-  const int radius = static_cast<int>(std::lround(annotation.cone_radius_px * scale));
-  cv::circle(picture, centre, radius, {0, 0, 0}, 3, cv::LINE_AA);
-  cv::circle(picture, centre, radius, {255, 220, 0}, 1, cv::LINE_AA);
+  if (annotation.cone_radius_px > 0) {
+    const cv::Point centre(result.width / 2, result.height / 2);
+    const int radius = static_cast<int>(std::lround(annotation.cone_radius_px * scale));
+    cv::circle(picture, centre, radius, {0, 0, 0}, 3, cv::LINE_AA);
+    cv::circle(picture, centre, radius, {255, 220, 0}, 1, cv::LINE_AA);
+  }
 
   const double size = result.height / 720.0;
   const int line = static_cast<int>(std::lround(32 * size));

@@ -21,6 +21,9 @@ struct Option {
   std::string help;
   std::function<void(const std::string& text)> set;  ///< @throws Error with the reason only
   std::function<std::string()> get;
+
+  /// Whether it is only true or false.
+  bool isSwitch() const { return range == "true | false"; }
 };
 
 /// The options of one plain struct, bound to its fields, which must outlive the set.

@@ -39,9 +39,6 @@ struct SessionOptions {
 SessionOptions resolveSessionOptions(const std::vector<std::pair<std::string, std::string>>& given,
                                      const std::string& source);
 
-/// The world that the session plays in. @throws Error as sim::loadWorld().
-std::shared_ptr<const sim::World> loadSessionWorld(const SessionOptions& options);
-
 /// A training session from first trajectory to final score: the trainer with its run folder, learning curve and clock.
 ///
 /// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the policy as it stands),

@@ -9,7 +9,8 @@ namespace early_fusion::model {
 
 /// What a person wants to see of one step of a policy.
 struct Annotation {
-  double cone_radius_px = 0;         ///< of the circle within which COLLECT and REMOVE act, in pixels of the plain image
+  double cone_radius_px =
+      0;  ///< of the circle within which COLLECT and REMOVE act, in pixels of the plain image; 0: not shown
   std::vector<std::string> request;  ///< item names, a line each
   std::string action;                ///< empty: not shown
   std::string note;                  ///< bottom line, such as the expert's action; empty: not shown

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "early_fusion/sim/episode.h"
+
+namespace early_fusion::learning {
+
+/// One step of an episode as a line of JSON, from which someone else can check the rules (docs/trace.md).
+/// @param before the episode before `action` is carried out.
+std::string traceLine(const sim::World& world, std::uint64_t episode, const sim::Episode& before, core::Action action);
+
+}  // namespace early_fusion::learning

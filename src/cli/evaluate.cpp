@@ -1,0 +1,72 @@
+#include <iostream>
+#include <memory>
+
+#include "command.h"
+#include "early_fusion/learning/evaluation.h"
+#include "early_fusion/learning/trace.h"
+#include "named_agent.h"
+
+namespace early_fusion::cli {
+
+namespace {
+
+struct EvaluateOptions {
+  std::string policy;
+  std::string task = "simple";
+  std::string world;
+  int episodes = 500;
+  std::uint64_t seed = learning::kHeldOutSeed;
+  std::string json;
+  std::string trace;
+  std::string exploration = "argmax";
+};
+
+void evaluate(const EvaluateOptions& options) {
+  const auto world = sim::loadWorld(options.world);
+  const sim::Task task = sim::loadTask(options.task);
+  NamedAgent named = makeNamedAgent(options.policy, options.exploration, options.seed, *world);
+  learning::RolloutRunner runner(*world, task, options.seed);
+  std::string trace;
+  if (!options.trace.empty()) {
+    runner.setObserver([&](std::uint64_t episode, const sim::Episode& before, const learning::TrajectoryStep& step) {
+      trace += learning::traceLine(*world, episode, before, step.action);
+    });
+  }
+  const learning::Evaluation evaluation =
+      learning::evaluate(runner, *named.agent, options.episodes, options.policy, [&](int done) {
+        if (onTerminal()) std::cerr << "\r" << done << "/" << options.episodes << " episodes" << std::flush;
+      });
+  if (onTerminal()) std::cerr << "\n";
+  if (!options.trace.empty()) writeTo(options.trace, trace);
+  if (!options.json.empty()) writeTo(options.json, evaluation.toJson());
+  (options.json == "-" || options.trace == "-" ? std::cerr : std::cout)
+      << options.policy << " on " << task.name << ": " << evaluation.summary() << "\n";
+}
+
+}  // namespace
+
+void addEvaluate(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("evaluate",
+                         "Score a policy or a baseline on episodes.\n"
+                         "Example: early_fusion evaluate --policy expert --task hard --episodes 1000 --json -");
+  const auto options = std::make_shared<EvaluateOptions>();
+  command->add_option("--policy", options->policy, "expert, random, idle, or a weights file")->required();
+  command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file")->capture_default_str();
+  command->add_option("--episodes", options->episodes, "how many")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "which episodes; the default's are held out from all training")
+      ->capture_default_str();
+  command->add_option("--json", options->json, "write means and per-episode scores to this file; -: standard output");
+  command->add_option("--trace", options->trace,
+                      "write every step as a line of JSON to this file: scene, orientation, request, action, the\n"
+                      "expert's action and its cost per requested object (docs/trace.md); -: standard output");
+  command->add_option("--exploration", options->exploration, "how a weights file's policy chooses")
+      ->check(CLI::IsMember({"argmax", "sample"}))
+      ->capture_default_str();
+  command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
+  command->callback([options] { evaluate(*options); });
+}
+
+}  // namespace early_fusion::cli

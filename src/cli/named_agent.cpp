@@ -1,0 +1,27 @@
+#include "named_agent.h"
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::cli {
+
+NamedAgent makeNamedAgent(const std::string& name, const std::string& exploration, std::uint64_t seed,
+                          const sim::World& world) {
+  if (name == "expert") return {nullptr, learning::makeExpertAgent()};
+  if (name == "random") return {nullptr, learning::makeRandomAgent(seed)};
+  if (name == "idle") return {nullptr, learning::makeIdleAgent()};
+  NamedAgent named;
+  named.policy = model::loadPolicy(nn::WeightsFile::read(name), name);
+  if (named.policy->vocabulary() != world.objects.vocabulary()) {
+    throw core::Error(name + ": was trained on other items than the world's object set has (" + world.options.objects +
+                      "); use the object set that it was trained on");
+  }
+  if (named.policy->options().image_size != world.options.image_size) {
+    throw core::Error(name + ": sees images of " + std::to_string(named.policy->options().image_size) +
+                      " pixels, but the world draws " + std::to_string(world.options.image_size) +
+                      "; set the world's image_size");
+  }
+  named.agent = learning::makePolicyAgent(*named.policy, model::actionChoiceFromName(exploration), seed);
+  return named;
+}
+
+}  // namespace early_fusion::cli

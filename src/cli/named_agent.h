@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "early_fusion/learning/agent.h"
+#include "early_fusion/sim/world.h"
+
+namespace early_fusion::cli {
+
+/// An agent with what it needs to live.
+struct NamedAgent {
+  std::unique_ptr<model::GoalPolicy> policy;  ///< null for agents without weights
+  std::unique_ptr<learning::Agent> agent;
+};
+
+/// @param name expert, random, idle, or a weights file.
+/// @param exploration argmax or sample, for a weights file.
+/// @throws Error when the file is no policy, or knows other items than the world has.
+NamedAgent makeNamedAgent(const std::string& name, const std::string& exploration, std::uint64_t seed,
+                          const sim::World& world);
+
+}  // namespace early_fusion::cli

@@ -1,0 +1,101 @@
+#include "pictures.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "early_fusion/model/annotation.h"
+#include "early_fusion/sim/rasterizer.h"
+
+namespace early_fusion::cli {
+
+namespace {
+
+constexpr int kColumns = 4;
+constexpr double kPi = 3.14159265358979323846;
+
+cv::Mat view(const core::Image& image) {
+  return cv::Mat(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
+}
+
+/// Images of one size side by side, kColumns in a row.
+core::Image sheet(const std::vector<core::Image>& images) {
+  const int width = images.front().width, height = images.front().height;
+  const int rows = (static_cast<int>(images.size()) + kColumns - 1) / kColumns;
+  core::Image result(kColumns * width, rows * height);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const int column = static_cast<int>(i) % kColumns, row = static_cast<int>(i) / kColumns;
+    view(images[i]).copyTo(view(result)(cv::Rect(column * width, row * height, width, height)));
+  }
+  return result;
+}
+
+core::Image draw(sim::Rasterizer& rasterizer, const sim::World& world, const PlayedStep& step,
+                 const PictureStyle& style) {
+  core::Image image;
+  rasterizer.setScene(step.instances, step.state.present);
+  rasterizer.render(world.rig.worldFromCamera(step.state.orientation), image);
+  model::Annotation annotation;
+  if (style.annotate) {
+    const double fov_rad = world.options.horizontal_fov_deg * kPi / 180;
+    annotation.cone_radius_px = model::coneRadiusPx(sim::kConeHalfAngleRad, fov_rad, style.size);
+    annotation.request = world.objects.vocabulary().names(step.state.request);
+    annotation.action = core::actionName(step.action);
+    if (step.action != step.expert_action) {
+      annotation.note = std::string("expert: ") + core::actionName(step.expert_action);
+    }
+  }
+  return model::annotate(image, annotation, style.scale);
+}
+
+/// The lattice orientation whose optical axis passes nearest to a point in the world [m].
+sim::Orientation aimAt(const sim::World& world, const Eigen::Vector3d& point) {
+  const sim::OrientationLattice& lattice = world.rig.lattice();
+  sim::Orientation best = lattice.lowest;
+  double best_cosine = -2;
+  for (int i = 0; i < lattice.size(); ++i) {
+    const Eigen::Vector3d seen = world.rig.worldFromCamera(lattice.at(i)).inverse() * point;
+    const double cosine = seen.normalized().z();
+    if (cosine > best_cosine) {
+      best_cosine = cosine;
+      best = lattice.at(i);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+core::Image drawStep(const sim::World& world, const PlayedStep& step, const PictureStyle& style) {
+  sim::Rasterizer rasterizer(world, style.size);
+  return draw(rasterizer, world, step, style);
+}
+
+core::Image drawEpisode(const sim::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style) {
+  constexpr int kSpread = 5;  // steps between two images where nothing is taken
+  sim::Rasterizer rasterizer(world, style.size);
+  std::vector<core::Image> images;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool takes = steps[i].action == core::Action::kCollect || steps[i].action == core::Action::kRemove;
+    if (takes || i % kSpread == 0 || i + 1 == steps.size()) images.push_back(draw(rasterizer, world, steps[i], style));
+  }
+  return sheet(images);
+}
+
+core::Image drawObjects(const sim::World& world, const PictureStyle& style) {
+  sim::Rasterizer rasterizer(world, style.size);
+  std::vector<core::Image> images;
+  for (int item = 0; item < world.objects.size(); ++item) {
+    PlayedStep step;
+    const double x = 0.5 * (world.placement.min_x + world.placement.max_x);
+    const double y = 0.5 * (world.placement.min_y + world.placement.max_y);
+    step.instances = {{item, x, y, 0.6}};
+    step.state.present = 1;
+    step.state.orientation = aimAt(world, {x, y, world.placement.z + 0.06});
+    core::Image image = draw(rasterizer, world, step, {style.size, style.scale, false});
+    model::Annotation caption;
+    caption.note = world.objects.vocabulary().name(item);
+    images.push_back(model::annotate(image, caption, 1));
+  }
+  return sheet(images);
+}
+
+}  // namespace early_fusion::cli

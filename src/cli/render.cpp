@@ -1,0 +1,101 @@
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "command.h"
+#include "early_fusion/core/error.h"
+#include "early_fusion/learning/evaluation.h"
+#include "named_agent.h"
+#include "pictures.h"
+
+namespace early_fusion::cli {
+
+namespace {
+
+struct RenderOptions {
+  std::string picture = "step";
+  std::string task = "simple";
+  std::string policy = "expert";
+  std::string world;
+  std::uint64_t seed = learning::kHeldOutSeed;
+  std::uint64_t episode = 0;
+  int step = 0;
+  int size = 128;
+  int scale = 1;
+  bool annotate = false;
+  std::string out;
+};
+
+void writePng(const std::string& file, const core::Image& image) {
+  const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", bgr, png);
+  writeTo(file, std::string(png.begin(), png.end()));
+}
+
+/// Plays the whole episode and keeps what each step looked like to the rules.
+std::vector<PlayedStep> play(const RenderOptions& options, const sim::World& world, const sim::Task& task) {
+  NamedAgent named = makeNamedAgent(options.policy, "argmax", options.seed, world);
+  std::vector<PlayedStep> played;
+  learning::RolloutRunner runner(world, task, options.seed);
+  runner.setObserver([&](std::uint64_t, const sim::Episode& before, const learning::TrajectoryStep& step) {
+    played.push_back({before.setup().instances, before.state(), step.action, step.label.action});
+  });
+  runner.run(options.episode, 1, *named.agent, false, [](const learning::Trajectory&) {});
+  return played;
+}
+
+void render(const RenderOptions& options) {
+  const auto world = sim::loadWorld(options.world);
+  const PictureStyle style{options.size, options.scale, options.annotate};
+  if (options.picture == "objects") {
+    writePng(options.out, drawObjects(*world, style));
+    return;
+  }
+  const sim::Task task = sim::loadTask(options.task);
+  if (options.step >= task.steps) {
+    throw core::Error("--step: " + std::to_string(options.step) + " is past the task's last step, " +
+                      std::to_string(task.steps - 1));
+  }
+  const std::vector<PlayedStep> played = play(options, *world, task);
+  if (options.picture == "episode") {
+    writePng(options.out, drawEpisode(*world, played, style));
+  } else {
+    writePng(options.out, drawStep(*world, played[options.step], style));
+  }
+}
+
+}  // namespace
+
+void addRender(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "render",
+      "Draw what the camera sees as a PNG file.\n"
+      "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
+  const auto options = std::make_shared<RenderOptions>();
+  command->add_option("--picture", options->picture, "one step, a sheet of the episode, or a sheet of all objects")
+      ->check(CLI::IsMember({"step", "episode", "objects"}))
+      ->capture_default_str();
+  command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file")->capture_default_str();
+  command->add_option("--seed", options->seed, "with --episode, which episode")->capture_default_str();
+  command->add_option("--episode", options->episode, "number of the episode")->capture_default_str();
+  command->add_option("--step", options->step, "which step of it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--policy", options->policy, "who acts until then: expert, random, idle, or a weights file")
+      ->capture_default_str();
+  command->add_option("--size", options->size, "edge of a drawn image [px], a multiple of 16")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  command->add_option("--scale", options->scale, "enlarge each image so many times")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  command->add_flag("--annotate", options->annotate, "add the crosshair circle, the request and the action");
+  command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
+  command->add_option("--out", options->out, "the PNG file to write")->required();
+  command->callback([options] { render(*options); });
+}
+
+}  // namespace early_fusion::cli
