@@ -97,6 +97,7 @@ CameraRig CameraRig::load(const std::string& urdf_file, const std::string& pan_j
   if (!model->getLink(optical_frame)) throw core::Error(urdf_file + ": no link '" + optical_frame + "'");
 
   CameraRig rig;
+  rig.world_frame_ = model->getRoot()->name;
   rig.pan_joint_ = pan_joint;
   rig.tilt_joint_ = tilt_joint;
   rig.optical_frame_ = optical_frame;

@@ -59,13 +59,14 @@ Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
   throw core::Error(place(file, value) + "scale is '" + text.str() + "'; it must be a positive number or [x, y, z]");
 }
 
-/// Moves the mesh upright onto z = 0, centred above the origin.
-void normalise(TexturedMesh& mesh) {
+/// Moves the mesh upright onto z = 0, centred above the origin. @return the point that became the origin.
+Eigen::Vector3d normalise(TexturedMesh& mesh) {
   const Eigen::AlignedBox3f bounds = mesh.bounds();
   const Eigen::Vector3f base(bounds.center().x(), bounds.center().y(), bounds.min().z());
   for (MeshPart& part : mesh.parts) {
     for (Vertex& vertex : part.vertices) vertex.position -= base;
   }
+  return base.cast<double>();
 }
 
 void checkSize(const TexturedMesh& mesh, const std::string& where) {
@@ -82,16 +83,16 @@ Object readObject(const YAML::Node& entry, const std::string& file, int max_tria
   checkKeys(entry, {"name", "mesh", "scale"}, file);
   Object object;
   object.name = readText(entry, "name", file);
-  const std::string mesh_file = core::resolvePath(file, readText(entry, "mesh", file));
-  const Eigen::Vector3d scale = readScale(entry["scale"], file);
+  object.mesh_file = core::resolvePath(file, readText(entry, "mesh", file));
+  object.mesh_scale = readScale(entry["scale"], file);
   const std::string where = place(file, entry) + "object '" + object.name + "': ";
   try {
-    object.mesh = loadTexturedMesh(mesh_file, scale, max_triangles);
+    object.mesh = loadTexturedMesh(object.mesh_file, object.mesh_scale, max_triangles);
   } catch (const core::Error& error) {
     throw core::Error(where + error.what());
   }
-  checkSize(object.mesh, where + mesh_file + ": ");
-  normalise(object.mesh);
+  checkSize(object.mesh, where + object.mesh_file + ": ");
+  object.mesh_origin = normalise(object.mesh);
   std::vector<Eigen::Vector3d> points;
   for (const MeshPart& part : object.mesh.parts) {
     for (const Vertex& vertex : part.vertices) points.push_back(vertex.position.cast<double>());

@@ -39,6 +39,8 @@ class CameraRig {
   static CameraRig load(const std::string& urdf_file, const std::string& pan_joint, const std::string& tilt_joint,
                         const std::string& optical_frame);
 
+  /// The URDF's root link: the frame of every pose [m] in the simulation.
+  const std::string& worldFrame() const { return world_frame_; }
   const std::string& panJoint() const { return pan_joint_; }
   const std::string& tiltJoint() const { return tilt_joint_; }
   const std::string& opticalFrame() const { return optical_frame_; }
@@ -48,6 +50,7 @@ class CameraRig {
   Eigen::Isometry3d worldFromCamera(Orientation orientation) const;
 
  private:
+  std::string world_frame_;
   std::string pan_joint_;
   std::string tilt_joint_;
   std::string optical_frame_;
