@@ -43,7 +43,8 @@ core::OptionSet WorldOptions::options() {
   return set;
 }
 
-std::shared_ptr<const World> loadWorld(const std::string& yaml_file) {
+std::shared_ptr<const World> loadWorld(const std::string& world_file) {
+  const std::string yaml_file = world_file.empty() ? core::shareFolder() + "/config/world.yaml" : world_file;
   auto world = std::make_shared<World>();
   WorldOptions& options = world->options;
   options.options().setFromYamlFile(yaml_file);

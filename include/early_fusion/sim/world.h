@@ -51,8 +51,8 @@ struct World {
   PlacementArea placement;
 };
 
-/// @param yaml_file a WorldOptions file; the paths in it are relative to it.
+/// @param world_file a WorldOptions file, to which the paths in it are relative; empty: the package's config/world.yaml.
 /// @throws Error naming file, key and value.
-std::shared_ptr<const World> loadWorld(const std::string& yaml_file);
+std::shared_ptr<const World> loadWorld(const std::string& world_file);
 
 }  // namespace early_fusion::sim
