@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian packages), configures and builds the package in place. Safe to run again: what is
+# there already is left alone.
+#
+# Usage: scripts/setup.sh [--tests]
+#   --tests   also what the tests and benchmarks need, and build them
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+case "${1:-}" in
+  "") with_tests=OFF ;;
+  --tests) with_tests=ON ;;
+  *)
+    sed -n '2,7s/^# \{0,1\}//p' "$0"
+    [ "$1" = --help ] || { echo "setup.sh: unknown argument '$1'" >&2; exit 2; }
+    exit 0
+    ;;
+esac
+
+libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libcli11-dev libdnnl-dev libeigen3-dev
+  libmeshoptimizer-dev libopencv-dev liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev)
+debian_ros=(catkin libactionlib-dev libcamera-info-manager-dev libcv-bridge-dev libdiagnostic-updater-dev
+  libimage-transport-dev libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev
+  libroslib-dev libtf2-ros-dev libvisualization-msgs-dev python3-actionlib python3-diagnostic-msgs python3-rosbag
+  ros-actionlib-msgs ros-core ros-diagnostic-msgs ros-geometry-msgs ros-message-generation ros-robot-state-publisher
+  ros-sensor-msgs ros-std-msgs ros-std-srvs ros-trajectory-msgs ros-visualization-msgs rosbash)
+for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-rostest)
+
+# Installs the Debian packages that are missing, saying which.
+install_missing() {
+  local missing=()
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  echo "Installing ${#missing[@]} packages and what they depend on: ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "setup.sh: not root, and no sudo; install these packages first" >&2; exit 1; }
+    as_root=(sudo)
+    echo "(with sudo, which may ask for your password)"
+  fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    >/dev/null
+}
+
+packages=("${libraries[@]}")
+[ "$with_tests" = OFF ] || packages+=("${for_tests[@]}")
+if [ -f /opt/ros/noetic/setup.sh ]; then
+  echo "Using ROS from /opt/ros/noetic"
+  set +u
+  . /opt/ros/noetic/setup.sh
+  set -u
+else
+  packages+=("${debian_ros[@]}")
+fi
+install_missing "${packages[@]}"
+
+# Tests stay configured once they have been asked for, so that the two scripts share one build.
+if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/CMakeCache.txt; then
+  cmake -S . -B build -DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests >build.log 2>&1 ||
+    { cat build.log; exit 1; }
+  rm -f build.log
+fi
+echo "Building with $(nproc) jobs"
+cmake --build build -j"$(nproc)" -- --no-print-directory | grep -vE '^(\[ *[0-9]+%\] Built|Consolidate|Scanning)' || true
+cmake --build build -- --no-print-directory >/dev/null
