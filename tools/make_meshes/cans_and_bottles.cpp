@@ -59,11 +59,11 @@ Model pottedMeatCan() {
   label.fill(blue);
   // The ring starts in the middle of a narrow side: the wide sides are around 1/4 and 3/4.
   for (const double middle : {0.25, 0.75}) {
-    label.text("HAM", middle - 0.13, 0.08, middle + 0.13, 0.46, yellow);
-    label.ellipse(middle, 0.72, 0.11, 0.19, white);
-    label.ellipse(middle, 0.72, 0.09, 0.15, ham);
+    label.text("HAM", middle - 0.15, 0.04, middle + 0.15, 0.44, yellow);
+    label.ellipse(middle, 0.66, 0.12, 0.19, white);
+    label.ellipse(middle, 0.66, 0.10, 0.15, ham);
   }
-  label.rectangle(0, 0.94, 1, 1, yellow);
+  label.rectangle(0, 0.88, 1, 1, yellow);
   Panel lid = canvas.panel(kLid);
   lid.fill(kTin);
   lid.rectangle(0.12, 0.12, 0.88, 0.88, {150, 152, 158});

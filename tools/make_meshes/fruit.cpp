@@ -98,8 +98,8 @@ namespace {
 Colour appleSkin(double x, double y) {
   // Streaks run from pole to pole; one cheek and the stalk's hollow stay green.
   const double streak = smoothNoise(x * 40, y * 3, 40, 3, 41);
-  const double cheek = ramp(0.26, 0.12, turnsBetween(x, 0.62)) * ramp(0.95, 0.6, y);
-  const double green = std::clamp(cheek + ramp(0.22, 0.1, y), 0.0, 1.0);
+  const double cheek = ramp(0.17, 0.06, turnsBetween(x, 0.62)) * ramp(0.9, 0.55, y);
+  const double green = std::clamp(cheek + ramp(0.20, 0.1, y), 0.0, 1.0);
   const Colour red = mix({176, 12, 24}, {206, 34, 36}, streak);
   return mix(red, {136, 182, 40}, green * (0.7 + 0.3 * streak));
 }

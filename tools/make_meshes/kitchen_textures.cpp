@@ -47,9 +47,9 @@ cv::Mat counterStone() {
   canvas.whole().paint([](double x, double y, const Colour&) {
     const double cloud = fractalNoise(x, y, 4, 4, 131);
     const double grain = smoothNoise(x * 128, y * 128, 128, 128, 132);
-    Colour colour = mix({78, 80, 84}, {104, 104, 106}, cloud);
-    if (grain > 0.86) colour = mix(colour, {150, 148, 144}, 0.7);
-    if (grain < 0.12) colour = mix(colour, {44, 46, 50}, 0.7);
+    Colour colour = mix({52, 58, 62}, {74, 80, 82}, cloud);
+    if (grain > 0.86) colour = mix(colour, {118, 122, 120}, 0.7);
+    if (grain < 0.12) colour = mix(colour, {32, 36, 40}, 0.7);
     return colour;
   });
   return canvas.finish();

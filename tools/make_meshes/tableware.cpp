@@ -63,10 +63,9 @@ Model bowl() {
   Canvas canvas(kObjectTextureSize, teal);
   Panel outside = canvas.panel(kOutside);
   outside.verticalGradient({10, 170, 178}, {0, 120, 132});
-  outside.rectangle(0, 0, 1, 0.10, white);
+  outside.rectangle(0, 0, 1, 0.12, white);
   Panel inside = canvas.panel(kInside);
-  inside.fill(white);
-  inside.ellipse(0.5, 0.5, 0.47, 0.47, pale);
+  inside.fill(pale);
   inside.ellipse(0.5, 0.5, 0.25, 0.25, {90, 204, 204});
   canvas.panel(kUnderside).fill({0, 110, 120});
   const int segments = 32;
