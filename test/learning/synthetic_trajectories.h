@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/learning/trajectory.h"
+
+namespace early_fusion::learning {
+
+inline constexpr int kTinySize = 16;  // [px]
+inline constexpr int kTinySteps = 6;
+
+inline core::Vocabulary tinyVocabulary() { return core::Vocabulary({"mug", "bowl", "plate"}); }
+
+/// A trajectory with random frames whose label can be read off them: the brighter the frame, the higher the action.
+inline Trajectory syntheticTrajectory(std::uint64_t episode) {
+  core::Random random(99, {episode});
+  Trajectory trajectory;
+  trajectory.episode = episode;
+  for (int s = 0; s < kTinySteps; ++s) {
+    TrajectoryStep step;
+    const int action = random.below(core::kActionCount);
+    for (int i = 0; i < 3 * kTinySize * kTinySize; ++i) {
+      step.frame.push_back(static_cast<std::uint8_t>(35 * action + random.below(20)));
+    }
+    step.action = core::Action(random.below(core::kActionCount));
+    step.label = {{random.below(3)}, core::Action(action), static_cast<expert::ActionSet>(1 << action)};
+    step.relabel = {{random.below(3), 2}, core::Action::kIdle, 1 << 6};
+    trajectory.steps.push_back(step);
+  }
+  trajectory.score.f1 = 0.5;
+  return trajectory;
+}
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,8 @@
+early_fusion_add_test(learning agent_test) early_fusion_add_test(learning checkpoint_tensors_test)
+    early_fusion_add_test(learning evaluation_test nlohmann_json::nlohmann_json)
+        early_fusion_add_test(learning learning_curve_test) early_fusion_add_test(learning progress_test)
+            early_fusion_add_test(learning rollout_test OpenMP::OpenMP_CXX)
+                early_fusion_add_test(learning trace_test nlohmann_json::nlohmann_json)
+                    early_fusion_add_test(learning trainer_test)
+                        early_fusion_add_test(learning training_session_test nlohmann_json::nlohmann_json)
+                            early_fusion_add_test(learning trajectory_test)

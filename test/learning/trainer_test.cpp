@@ -1,0 +1,153 @@
+#include "early_fusion/learning/trainer.h"
+
+#include <gtest/gtest.h>
+
+#include "early_fusion/core/error.h"
+#include "synthetic_trajectories.h"
+
+namespace early_fusion::learning {
+namespace {
+
+model::PolicyOptions tinyPolicy() {
+  model::PolicyOptions options;
+  options.image_size = kTinySize;
+  options.precision = "f32";
+  return options;
+}
+
+TrainingOptions tinyTraining() {
+  TrainingOptions options;
+  options.trajectories = 20;
+  options.trajectories_per_round = 4;
+  options.window = 6;
+  options.epochs = 1.5;
+  options.batch_size = 5;
+  options.learning_rate = 1e-2;
+  options.final_learning_rate = 1e-3;
+  options.relabel_share = 0.25;
+  return options;
+}
+
+std::unique_ptr<Trainer> makeTrainer(const TrainingOptions& options = tinyTraining()) {
+  return std::make_unique<Trainer>(tinyPolicy(), options, tinyVocabulary(), 3);
+}
+
+RoundStatistics runRound(Trainer& trainer) {
+  while (!trainer.roundDue()) trainer.add(syntheticTrajectory(trainer.trajectoriesSeen()));
+  return trainer.trainRound();
+}
+
+/// Replays synthetic trajectories; their actions are a function of the episode already.
+std::vector<Trajectory> replay(const std::vector<std::int64_t>& episodes,
+                               const std::vector<std::vector<core::Action>>& actions) {
+  std::vector<Trajectory> window;
+  for (std::size_t i = 0; i < episodes.size(); ++i) {
+    window.push_back(syntheticTrajectory(episodes[i]));
+    for (int s = 0; s < kTinySteps; ++s) EXPECT_EQ(window.back().steps[s].action, actions[i][s]);
+  }
+  return window;
+}
+
+TEST(Trainer, RoundsAreDueAfterTheSetNumberOfTrajectoriesAndTheLastMayBeShorter) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = 6;
+  const auto trainer = makeTrainer(options);
+  EXPECT_EQ(trainer->missingInRound(), 4);
+  runRound(*trainer);
+  EXPECT_FALSE(trainer->finished());
+  EXPECT_EQ(trainer->missingInRound(), 2);
+  runRound(*trainer);
+  EXPECT_TRUE(trainer->finished());
+  EXPECT_EQ(trainer->trajectoriesSeen(), 6u);
+}
+
+TEST(Trainer, TheWindowKeepsTheMostRecentTrajectories) {
+  const auto trainer = makeTrainer();
+  for (int i = 0; i < 3; ++i) runRound(*trainer);
+  ASSERT_EQ(trainer->window().size(), 6u);
+  EXPECT_EQ(trainer->window().front().episode, 6u);
+  EXPECT_EQ(trainer->window().back().episode, 11u);
+}
+
+TEST(Trainer, LearnsLabelsThatTheFramesShow) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = 160;
+  options.relabel_share = 0;
+  const auto trainer = makeTrainer(options);
+  const double first = runRound(*trainer).loss;
+  double last = first;
+  while (!trainer->finished()) last = runRound(*trainer).loss;
+  EXPECT_LT(last, 0.6 * first);
+}
+
+TEST(Trainer, TheSameSeedGivesTheSameWeights) {
+  const auto a = makeTrainer(), b = makeTrainer();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(runRound(*a).loss, runRound(*b).loss);
+  }
+  EXPECT_EQ(a->policy().parameters().values(), b->policy().parameters().values());
+}
+
+TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
+  const auto whole = makeTrainer();
+  runRound(*whole);
+  runRound(*whole);
+  const nn::WeightsFile saved = nn::WeightsFile::parse(whole->save().serialize(), "checkpoint");
+  const auto resumed = makeTrainer();
+  resumed->restore(saved, "checkpoint", replay);
+  while (!whole->finished()) EXPECT_EQ(runRound(*whole).loss, runRound(*resumed).loss);
+  EXPECT_TRUE(resumed->finished());
+  EXPECT_EQ(whole->policy().parameters().values(), resumed->policy().parameters().values());
+  EXPECT_EQ(whole->policy().parameters().buffers(), resumed->policy().parameters().buffers());
+}
+
+TEST(Trainer, LearningRateFallsAlongACosineBetweenTheTwoRates) {
+  const auto trainer = makeTrainer();
+  double before = 1;
+  while (!trainer->finished()) {
+    const double rate = runRound(*trainer).learning_rate;
+    EXPECT_LT(rate, before);
+    before = rate;
+  }
+  EXPECT_NEAR(before, 1e-3, 1e-9);
+}
+
+TEST(Trainer, RelabelledSamplesTeachTheOtherRequestsLabel) {
+  TrainingOptions options = tinyTraining();
+  options.relabel_share = 1;  // every relabel is IDLE
+  const auto trainer = makeTrainer(options);
+  double last = 0;
+  while (!trainer->finished()) last = runRound(*trainer).loss;
+  EXPECT_LT(last, 0.5);
+}
+
+TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {
+  const auto trainer = makeTrainer();
+  nn::WeightsFile file = trainer->save();
+  file.tensors.erase("checkpoint.counters");
+  try {
+    makeTrainer()->restore(file, "broken.safetensors", replay);
+    FAIL() << "accepted";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.safetensors"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("checkpoint.counters"), std::string::npos);
+  }
+}
+
+TEST(Trainer, ReportsTheNewTrajectoriesScoresAndProgress) {
+  const auto trainer = makeTrainer();
+  while (!trainer->roundDue()) trainer->add(syntheticTrajectory(trainer->trajectoriesSeen()));
+  std::vector<double> shares;
+  const RoundStatistics statistics = trainer->trainRound([&](double share) { shares.push_back(share); });
+  EXPECT_EQ(statistics.round, 1u);
+  EXPECT_EQ(statistics.trajectories, 4u);
+  EXPECT_DOUBLE_EQ(statistics.f1, 0.5);
+  EXPECT_GT(statistics.agreement, 0);
+  EXPECT_LT(statistics.agreement, 1);
+  // 1.5 passes over 4 * 6 frames in batches of 5.
+  EXPECT_EQ(shares.size(), 8u);
+  EXPECT_DOUBLE_EQ(shares.back(), 1.0);
+}
+
+}  // namespace
+}  // namespace early_fusion::learning

@@ -1,0 +1,137 @@
+#include "early_fusion/learning/training_session.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
+
+namespace early_fusion::learning {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TrainingSessionTest : public testing::Test {
+ protected:
+  TrainingSessionTest() { core::writeFileAtomically(folder_ / "short.yaml", "{instances: 3, requested: 1, steps: 4}"); }
+  ~TrainingSessionTest() override { fs::remove_all(folder_); }
+
+  SessionOptions options(const std::string& output) const {
+    return resolveSessionOptions({{"task", folder_ / "short.yaml"},
+                                  {"output", folder_ / output},
+                                  {"precision", "f32"},
+                                  {"trajectories", "9"},
+                                  {"trajectories_per_round", "3"},
+                                  {"window", "5"},
+                                  {"evaluation_episodes", "2"}},
+                                 "test");
+  }
+
+  static std::shared_ptr<const sim::World> world() {
+    static const std::shared_ptr<const sim::World> world = sim::loadWorld("");
+    return world;
+  }
+
+  static void runTo(TrainingSession& session, std::uint64_t trajectories) {
+    RolloutRunner runner(session.world(), session.task(), session.options().seed);
+    while (session.trainer().trajectoriesSeen() < trajectories) {
+      const auto agent = makePolicyAgent(session.trainer().policy(), model::ActionChoice::kSample, 1);
+      runner.run(session.trainer().trajectoriesSeen(), session.trainer().missingInRound(), *agent, true,
+                 [&](Trajectory trajectory) { session.trainer().add(std::move(trajectory)); });
+      session.trainRound();
+    }
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / ("early_fusion_session_test" + std::to_string(::getpid()));
+};
+
+TEST_F(TrainingSessionTest, RunsToAScoreAndTheSameSeedGivesTheSameWeights) {
+  for (const char* name : {"a", "b"}) {
+    TrainingSession session(options(name), world());
+    std::vector<std::string> stages;
+    const Evaluation evaluation =
+        runSession(session, [&](const Progress& progress) { stages.push_back(progress.stage); });
+    EXPECT_EQ(evaluation.outcomes.size(), 2u);
+    EXPECT_EQ(stages, (std::vector<std::string>{"training", "training", "training", "evaluation", "evaluation"}));
+    const auto result = nlohmann::json::parse(core::readFile(session.resultPath()));
+    EXPECT_EQ(result["episodes"], 2);
+    EXPECT_EQ(result["training"]["trajectories"], 9);
+  }
+  EXPECT_EQ(core::readFile(folder_ / "a" / "weights.safetensors"),
+            core::readFile(folder_ / "b" / "weights.safetensors"));
+}
+
+TEST_F(TrainingSessionTest, AnInterruptedSessionGoesOnBitForBit) {
+  TrainingSession whole(options("whole"), world());
+  runSession(whole, [](const Progress&) {});
+  {
+    TrainingSession interrupted(options("parts"), world());
+    runTo(interrupted, 6);
+  }
+  SessionOptions again = options("parts");
+  again.resume = true;
+  TrainingSession resumed(again, world());
+  EXPECT_TRUE(resumed.resumed());
+  EXPECT_EQ(resumed.trainer().trajectoriesSeen(), 6u);
+  runSession(resumed, [](const Progress&) {});
+  EXPECT_EQ(core::readFile(whole.weightsPath()), core::readFile(resumed.weightsPath()));
+  EXPECT_EQ(LearningCurve::parse(core::readFile(folder_ / "parts" / "curve.csv"), "curve").points().size(), 3u);
+}
+
+TEST_F(TrainingSessionTest, RefusesToOverwriteASessionAndToResumeAnother) {
+  {
+    TrainingSession session(options("a"), world());
+    runTo(session, 3);
+  }
+  EXPECT_THROW(TrainingSession(options("a"), world()), core::Error);
+  SessionOptions other = options("a");
+  other.resume = true;
+  other.training.learning_rate = 0.5;
+  try {
+    TrainingSession session(other, world());
+    FAIL() << "accepted";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("learning_rate"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
+  SessionOptions held_out = options("a");
+  held_out.seed = kHeldOutSeed;
+  EXPECT_THROW(TrainingSession(held_out, world()), core::Error);
+  {
+    TrainingSession session(options("b"), world());
+    runTo(session, 3);
+  }
+  const std::string path = folder_ / "b" / "checkpoint.safetensors";
+  const std::string bytes = core::readFile(path);
+  core::writeFileAtomically(path, bytes.substr(0, bytes.size() / 2));
+  SessionOptions again = options("b");
+  again.resume = true;
+  try {
+    TrainingSession session(again, world());
+    FAIL() << "accepted";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+  }
+}
+
+TEST(SessionOptions, EveryShippedPresetLoads) {
+  for (const auto& entry : fs::directory_iterator(fs::path(core::shareFolder()) / "config" / "presets")) {
+    EXPECT_NO_THROW(resolveSessionOptions({{"preset", entry.path().stem().string()}}, "test")) << entry.path();
+  }
+  EXPECT_THROW(resolveSessionOptions({{"preset", "slow"}}, "test"), core::Error);
+}
+
+TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {
+  const SessionOptions options = resolveSessionOptions({{"learning_rate", "0.25"}, {"preset", "paper"}}, "test");
+  EXPECT_DOUBLE_EQ(options.training.learning_rate, 0.25);
+  EXPECT_EQ(options.training.window, 150);
+  EXPECT_DOUBLE_EQ(options.policy.dropout, 0.5);
+}
+
+}  // namespace
+}  // namespace early_fusion::learning

@@ -1,0 +1,88 @@
+#include "early_fusion/learning/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "shipped_world.h"
+
+namespace early_fusion::learning {
+namespace {
+
+TEST(Trajectory, AgreementIsTheShareOfTheExpertsActions) {
+  Trajectory trajectory;
+  trajectory.steps.resize(4);
+  for (TrajectoryStep& step : trajectory.steps) step.action = core::Action::kPanLeft;
+  trajectory.steps[1].label.action = core::Action::kPanLeft;
+  for (int s : {0, 2, 3}) trajectory.steps[s].label.action = core::Action::kIdle;
+  EXPECT_DOUBLE_EQ(trajectory.agreement(), 0.25);
+  EXPECT_EQ(Trajectory().agreement(), 0.0);
+}
+
+class TrajectoryRecorderTest : public testing::Test {
+ protected:
+  TrajectoryRecorderTest()
+      : task_(sim::loadTask("hard")),
+        episode_(shippedWorld(), task_, sim::sampleEpisode(shippedWorld(), task_, 2, 6)) {}
+
+  Trajectory recordAll(std::uint64_t seed) {
+    TrajectoryRecorder recorder(seed, 6, episode_.setup().instances, episode_.sharedCone());
+    sim::Episode episode = episode_;
+    while (!episode.finished()) {
+      const core::Action action = recorder.record(episode.state(), {1, 2, 3}).label.action;
+      recorder.setAction(action);
+      episode.step(action);
+    }
+    return recorder.finish(episode.score());
+  }
+
+  sim::Task task_;
+  sim::Episode episode_;
+};
+
+TEST_F(TrajectoryRecorderTest, EveryRelabelAsksForWhatIsThereAndHasTheExpertsLabel) {
+  const Trajectory trajectory = recordAll(1);
+  ASSERT_EQ(trajectory.steps.size(), 48u);
+  sim::Episode episode = episode_;
+  int differing = 0;
+  for (const TrajectoryStep& step : trajectory.steps) {
+    const sim::EpisodeState& state = episode.state();
+    const core::Request& request = step.relabel.request;
+    EXPECT_GE(request.size(), 1u);
+    EXPECT_LE(request.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(request.begin(), request.end()));
+    for (int item : request) {
+      int there = 0;
+      for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
+        there += ((state.present >> i) & 1) && episode.setup().instances[i].item == item;
+      }
+      EXPECT_LE(std::count(request.begin(), request.end(), item), there);
+    }
+    EXPECT_EQ(step.relabel.action,
+              expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request));
+    differing += step.relabel.action != step.label.action;
+    episode.step(step.action);
+  }
+  EXPECT_GT(differing, 5);
+}
+
+TEST_F(TrajectoryRecorderTest, RelabelsDependOnSeedEpisodeAndStepAlone) {
+  const Trajectory a = recordAll(1), b = recordAll(1), c = recordAll(2);
+  int differing = 0;
+  for (std::size_t s = 0; s < a.steps.size(); ++s) {
+    EXPECT_EQ(a.steps[s].relabel.request, b.steps[s].relabel.request);
+    differing += a.steps[s].relabel.request != c.steps[s].relabel.request;
+  }
+  EXPECT_GT(differing, 20);
+}
+
+TEST_F(TrajectoryRecorderTest, KeepsScoreFramesAndEpisode) {
+  const Trajectory trajectory = recordAll(1);
+  EXPECT_EQ(trajectory.episode, 6u);
+  EXPECT_EQ(trajectory.steps[10].frame, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_GT(trajectory.score.f1, 0);
+  EXPECT_DOUBLE_EQ(trajectory.agreement(), 1.0);
+}
+
+}  // namespace
+}  // namespace early_fusion::learning
