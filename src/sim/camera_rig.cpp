@@ -81,6 +81,21 @@ Eigen::AngleAxisd turn(int steps, const Eigen::Vector3d& axis) { return Eigen::A
 
 }  // namespace
 
+Orientation turned(Orientation from, core::Action action) {
+  switch (action) {
+    case core::Action::kPanLeft:
+      return {from.pan + 1, from.tilt};
+    case core::Action::kPanRight:
+      return {from.pan - 1, from.tilt};
+    case core::Action::kTiltUp:
+      return {from.pan, from.tilt - 1};
+    case core::Action::kTiltDown:
+      return {from.pan, from.tilt + 1};
+    default:
+      return from;
+  }
+}
+
 bool OrientationLattice::contains(Orientation o) const {
   return o.pan >= lowest.pan && o.pan <= highest.pan && o.tilt >= lowest.tilt && o.tilt <= highest.tilt;
 }

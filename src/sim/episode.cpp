@@ -28,29 +28,11 @@ Episode::Episode(const World& world, const Task& task, EpisodeSetup setup)
 
 void Episode::step(core::Action action) {
   assert(!finished());
-  Orientation moved = state_.orientation;
-  switch (action) {
-    case core::Action::kPanLeft:
-      ++moved.pan;
-      break;
-    case core::Action::kPanRight:
-      --moved.pan;
-      break;
-    case core::Action::kTiltUp:
-      --moved.tilt;
-      break;
-    case core::Action::kTiltDown:
-      ++moved.tilt;
-      break;
-    case core::Action::kCollect:
-    case core::Action::kRemove: {
-      const int instance = cone_->nearest(state_.orientation, state_.present);
-      if (instance >= 0) take(instance, action == core::Action::kCollect);
-      break;
-    }
-    case core::Action::kIdle:
-      break;
+  if (action == core::Action::kCollect || action == core::Action::kRemove) {
+    const int instance = cone_->nearest(state_.orientation, state_.present);
+    if (instance >= 0) take(instance, action == core::Action::kCollect);
   }
+  const Orientation moved = turned(state_.orientation, action);
   if (cone_->lattice().contains(moved)) state_.orientation = moved;
   ++state_.step;
 }

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <string>
 
+#include "early_fusion/core/action.h"
+
 namespace early_fusion::sim {
 
 /// One move of a joint: 2 degrees (Walsman et al. 2019, sec. IV-A).
@@ -16,6 +18,9 @@ struct Orientation {
 
 inline bool operator==(Orientation a, Orientation b) { return a.pan == b.pan && a.tilt == b.tilt; }
 inline bool operator!=(Orientation a, Orientation b) { return !(a == b); }
+
+/// Where a move leads, joint limits aside; COLLECT, REMOVE and IDLE lead nowhere.
+Orientation turned(Orientation from, core::Action action);
 
 /// The orientations within the joint limits: every whole step inside them.
 struct OrientationLattice {
