@@ -123,4 +123,10 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, co
 
 sim::Score score(const EpisodeResult& result) { return {result.precision, result.recall, result.f1}; }
 
+std::string itemList(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
+  return text.empty() ? "nothing" : text;
+}
+
 }  // namespace early_fusion::nodes

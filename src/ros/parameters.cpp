@@ -37,15 +37,18 @@ std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
 
 }  // namespace
 
-void loadParameters(core::OptionSet& options) {
+std::vector<std::pair<std::string, std::string>> privateParameters() {
   const std::string node = ::ros::this_node::getName();
+  std::vector<std::pair<std::string, std::string>> parameters;
   XmlRpc::XmlRpcValue values;
-  if (!::ros::param::get(node, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
-  for (auto& [name, value] : values) {
-    const std::string parameter = node + "/" + name;
-    // An unknown group of parameters should be called unknown, not ill-typed.
-    const bool is_group = value.getType() == XmlRpc::XmlRpcValue::TypeStruct;
-    options.set(name, is_group && !options.has(name) ? "" : toText(value, parameter), parameter);
+  if (!::ros::param::get(node, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return parameters;
+  for (auto& [name, value] : values) parameters.emplace_back(name, toText(value, node + "/" + name));
+  return parameters;
+}
+
+void loadParameters(core::OptionSet& options) {
+  for (const auto& [name, text] : privateParameters()) {
+    options.set(name, text, ::ros::this_node::getName() + "/" + name);
   }
 }
 

@@ -52,4 +52,7 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, co
 
 sim::Score score(const EpisodeResult& result);
 
+/// "mug, bowl", or "nothing".
+std::string itemList(const std::vector<std::string>& items);
+
 }  // namespace early_fusion::nodes

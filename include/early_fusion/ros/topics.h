@@ -33,4 +33,8 @@ inline constexpr char kProgressTopic[] = "progress";  ///< latched
 /// A parameter that a launch file sets to "" and a node that cannot go on sets to the reason; see runNode().
 inline constexpr char kFailureParameter[] = "session_failure";
 
+/// A parameter that a launch file sets to false and the trainer to true once its session has begun: a trainer that is
+/// respawned goes on with that session instead of refusing the run folder of another.
+inline constexpr char kStartedParameter[] = "session_started";
+
 }  // namespace early_fusion::nodes

@@ -1,0 +1,10 @@
+#include "early_fusion/ros/evaluator_node.h"
+
+#include <ros/init.h>
+
+#include "early_fusion/ros/run_node.h"
+
+int main(int argc, char** argv) {
+  namespace nodes = early_fusion::nodes;
+  return nodes::runNode<nodes::EvaluatorNode>(argc, argv, "evaluator", [] { ros::spin(); });
+}

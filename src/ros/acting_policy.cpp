@@ -1,0 +1,60 @@
+#include "early_fusion/ros/acting_policy.h"
+
+#include <cassert>
+#include <cstdlib>
+
+namespace early_fusion::nodes {
+
+namespace {
+
+constexpr double kDefaultFovDeg = 60;  // Walsman et al. 2019, sec. IV-A
+
+}  // namespace
+
+void ActingPolicy::load(nn::WeightsFile file, const std::string& source, const Acting& acting) {
+  const model::ActionChoice choice = model::actionChoiceFromName(acting.mode);
+  std::unique_ptr<model::GoalPolicy> policy = model::loadPolicy(file, source, acting.precision);
+  if (policy_ && policy_->options().image_size != policy->options().image_size) frames_.clear();
+  file_ = std::move(file);
+  policy_ = std::move(policy);
+  acting_ = acting;
+  choice_ = choice;
+}
+
+double ActingPolicy::horizontalFovDeg() const {
+  const auto found = file_.metadata.find("horizontal_fov_deg");
+  const double fov_deg = found == file_.metadata.end() ? 0 : std::atof(found->second.c_str());
+  return fov_deg > 0 && fov_deg < 180 ? fov_deg : kDefaultFovDeg;
+}
+
+void ActingPolicy::remember(const core::Image& frame, std::uint64_t episode, std::uint32_t step) {
+  const bool again = episode == episode_ && step == step_ && !frames_.empty();
+  const bool follows = episode == episode_ && step == step_ + 1;
+  if (again) {
+    frames_.front() = frame;
+  } else {
+    if (!follows || step == 0) frames_.clear();
+    frames_.push_front(frame);
+  }
+  if (frames_.size() > model::kHistory) frames_.pop_back();
+  episode_ = episode;
+  step_ = step;
+}
+
+Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
+                              std::uint32_t step) {
+  assert(loaded() && frame.width == imageSize() && frame.height == imageSize());
+  const core::Request request = policy_->vocabulary().request(items);
+  remember(frame, episode, step);
+  model::Observation observation;
+  observation.request = &request;
+  for (std::size_t age = 0; age < frames_.size(); ++age) observation.frames[age] = frames_[age].rgb.data();
+  policy_->predict({observation}, probabilities_);
+  Decision decision;
+  decision.action = model::chooseAction(probabilities_.row(0), choice_, acting_.seed, episode, step);
+  decision.probabilities.assign(probabilities_.data(), probabilities_.data() + core::kActionCount);
+  decision.frames = static_cast<int>(frames_.size());
+  return decision;
+}
+
+}  // namespace early_fusion::nodes

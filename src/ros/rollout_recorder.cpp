@@ -1,0 +1,109 @@
+#include "early_fusion/ros/rollout_recorder.h"
+
+#include <sensor_msgs/image_encodings.h>
+
+#include <algorithm>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/ros/conversions.h"
+
+namespace early_fusion::nodes {
+
+namespace {
+
+std::string stepName(const Scene& scene) {
+  return "episode " + std::to_string(scene.episode) + ", step " + std::to_string(scene.step);
+}
+
+bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
+  return a.step == b.step && a.orientation == b.orientation && a.present == b.present && a.request == b.request;
+}
+
+}  // namespace
+
+RolloutRecorder::RolloutRecorder(const sim::World& world, const RolloutPlan& plan)
+    : world_(world), plan_(plan), task_(sim::loadTask(plan.task)), next_(plan.first_episode) {}
+
+bool RolloutRecorder::wanted(const Scene& scene) const {
+  return scene.task == task_.name && scene.seed == plan_.seed && scene.episode >= next_ && scene.episode < end() &&
+         finished_.count(scene.episode) == 0;
+}
+
+void RolloutRecorder::begin(const Scene& scene) {
+  SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
+  sim::EpisodeSetup setup{std::move(start.instances), std::move(start.state.request), start.state.orientation};
+  sim::Episode episode(world_, task_, std::move(setup));
+  learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone());
+  recording_.emplace(Recording{scene.episode, std::move(episode), std::move(recorder), ::ros::Time(), ""});
+}
+
+void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& request, const Scene& scene,
+                            const Action& action) const {
+  const auto size = static_cast<std::uint32_t>(world_.options.image_size);
+  if (image.encoding != sensor_msgs::image_encodings::RGB8 || image.width != size || image.height != size ||
+      image.step != 3 * size || image.data.size() != 3 * size * size) {
+    throw core::Error(stepName(scene) + ": the image is " + std::to_string(image.width) + " x " +
+                      std::to_string(image.height) + " " + image.encoding + "; expected " + std::to_string(size) +
+                      " x " + std::to_string(size) + " rgb8 without padding");
+  }
+  if (action.weights != plan_.weights || action.mode != plan_.mode) {
+    throw core::Error(stepName(scene) + ": was decided by weights '" + action.weights + "' (" + action.mode +
+                      "); expected '" + plan_.weights + "' (" + plan_.mode + ")");
+  }
+  const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, model::kHistory);
+  if (action.frames != frames) {
+    throw core::Error(stepName(scene) + ": was decided from " + std::to_string(action.frames) + " images, not " +
+                      std::to_string(frames) + ": the policy has not seen the episode from its beginning");
+  }
+  const SceneState now = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
+  if (scene.steps != static_cast<std::uint32_t>(task_.steps) || request.items != scene.request ||
+      scene.previous_action != recording_->previous_action || !sameState(now.state, recording_->episode.state())) {
+    throw core::Error(stepName(scene) + ": does not follow from the step before it (step " +
+                      std::to_string(recording_->episode.state().step - 1) + " was recorded last)");
+  }
+}
+
+const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& image, const Request& request,
+                                                     const Scene& scene, const Action& action) {
+  if (!wanted(scene)) return nullptr;
+  // What was published again, for a policy that had missed it.
+  if (recording_ && recording_->stamp == scene.header.stamp) return nullptr;
+  try {
+    if (scene.step == 0) begin(scene);
+    // The rest of an episode that was dropped.
+    if (!recording_ || recording_->number != scene.episode) return nullptr;
+    check(image, request, scene, action);
+    const core::Action taken = core::actionFromName(action.name);
+    const learning::TrajectoryStep& step = recording_->recorder.record(recording_->episode.state(), image.data);
+    recording_->recorder.setAction(taken);
+    recording_->episode.step(taken);
+    recording_->stamp = scene.header.stamp;
+    recording_->previous_action = action.name;
+    if (!recording_->episode.finished()) return &step;
+    const sim::Score score = recording_->episode.score();
+    learning::Trajectory& whole = finished_[recording_->number] = recording_->recorder.finish(score);
+    recording_.reset();
+    return &whole.steps.back();
+  } catch (const core::Error&) {
+    recording_.reset();
+    throw;
+  }
+}
+
+std::optional<learning::Trajectory> RolloutRecorder::next() {
+  const auto found = finished_.find(next_);
+  if (found == finished_.end()) return std::nullopt;
+  std::optional<learning::Trajectory> trajectory = std::move(found->second);
+  finished_.erase(found);
+  ++next_;
+  return trajectory;
+}
+
+std::pair<std::uint64_t, std::uint64_t> RolloutRecorder::missing() const {
+  std::uint64_t last = next_;
+  while (last < end() && finished_.count(last) == 0) ++last;
+  return {next_, last};
+}
+
+}  // namespace early_fusion::nodes

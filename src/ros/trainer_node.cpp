@@ -1,0 +1,192 @@
+#include "early_fusion/ros/trainer_node.h"
+
+#include <early_fusion/Progress.h>
+#include <early_fusion/Weights.h>
+#include <ros/param.h>
+#include <ros/this_node.h>
+
+#include <algorithm>
+
+#include "early_fusion/ros/parameters.h"
+#include "early_fusion/ros/topics.h"
+
+namespace early_fusion::nodes {
+
+namespace {
+
+constexpr double kRoundPollSec = 0.01;
+
+/// Thrown through a round of training to end it.
+struct Stopped {};
+
+std::unique_ptr<learning::TrainingSession> makeSession() {
+  learning::SessionOptions known;
+  const core::OptionSet names = known.options();
+  std::vector<std::pair<std::string, std::string>> given;
+  for (auto& parameter : privateParameters()) {
+    if (names.has(parameter.first)) given.push_back(std::move(parameter));
+  }
+  learning::SessionOptions options = learning::resolveSessionOptions(given, ::ros::this_node::getName());
+  bool started = false;
+  if (::ros::param::get(kStartedParameter, started) && started) options.resume = true;
+  auto session = std::make_unique<learning::TrainingSession>(options, sim::loadWorld(options.world));
+  if (::ros::param::has(kStartedParameter)) ::ros::param::set(kStartedParameter, true);
+  return session;
+}
+
+}  // namespace
+
+core::OptionSet TrainerNode::Options::options() {
+  core::OptionSet set("trainer");
+  set.include(session.options());
+  set.add("stall_timeout", stall_sec, 1, 3600, "s", "ask for episodes again when no step of them has come for so long");
+  set.add("progress_period", progress_period_sec, 0.1, 3600, "s", "between two messages on 'progress'");
+  addDiagnosticPeriod(set, diagnostic_period_sec);
+  return set;
+}
+
+TrainerNode::TrainerNode(const Options& options)
+    : session_(makeSession()),
+      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
+      client_(node_, session_->world(), options.stall_sec, health_),
+      weights_publisher_(node_.advertise<Weights>(kWeightsTopic, 1, true)),
+      progress_publisher_(node_.advertise<Progress>(kProgressTopic, 4, true)) {
+  const learning::SessionOptions& session = session_->options();
+  ROS_INFO("%s %s (%ld parameters) on task %s, preset %s, seed %lu, in %s",
+           session_->resumed() ? "going on with" : "training", session.policy.kind.c_str(),
+           static_cast<long>(session_->trainer().policy().parameters().values().size()), session.task.c_str(),
+           session.preset.c_str(), static_cast<unsigned long>(session.seed), session.output.c_str());
+  progress_timer_ = node_.createWallTimer(::ros::WallDuration(options.progress_period_sec),
+                                          [this](const ::ros::WallTimerEvent&) { publishProgress(); });
+  round_timer_ = node_.createWallTimer(
+      ::ros::WallDuration(kRoundPollSec), [this](const ::ros::WallTimerEvent&) { onRoundTimer(); }, false, false);
+  goOn();
+}
+
+TrainerNode::~TrainerNode() {
+  stop_ = true;
+  if (round_.valid()) round_.wait();
+}
+
+void TrainerNode::goOn() { session_->trainer().finished() ? evaluate() : rollOut(); }
+
+void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
+                       std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done) {
+  const std::string bytes = session_->weights().serialize();
+  Weights weights;
+  weights.header.stamp = ::ros::Time::now();
+  weights.id = weights_id_ = session_->weightsId();
+  weights.mode = mode;
+  weights.seed = seed;
+  weights.precision = session_->options().policy.precision;
+  weights.data.assign(bytes.begin(), bytes.end());
+  weights_publisher_.publish(weights);
+
+  RolloutPlan plan;
+  plan.task = session_->options().task;
+  plan.seed = seed;
+  plan.first_episode = first;
+  plan.episodes = static_cast<std::uint32_t>(episodes);
+  plan.weights = weights_id_;
+  plan.mode = mode;
+  client_.start(plan, std::move(on_trajectory), std::move(on_done));
+}
+
+void TrainerNode::rollOut() {
+  enterStage("rollouts");
+  learning::Trainer& trainer = session_->trainer();
+  const int episodes = trainer.missingInRound();
+  const auto keep = [this, episodes](learning::Trajectory trajectory) {
+    learning::Trainer& learner = session_->trainer();
+    learner.add(std::move(trajectory));
+    stage_done_ = 1 - static_cast<double>(learner.roundDue() ? 0 : learner.missingInRound()) / episodes;
+    progress_ = session_->progress();
+    progress_taken_ = ::ros::WallTime::now();
+  };
+  play(trainer.options().exploration, session_->options().seed, trainer.trajectoriesSeen(), episodes, keep,
+       [this] { train(); });
+}
+
+void TrainerNode::train() {
+  enterStage("training");
+  round_ = std::async(std::launch::async, [this] {
+    return session_->trainRound([this](double share) {
+      stage_done_ = share;
+      if (stop_) throw Stopped();
+    });
+  });
+  round_timer_.start();
+}
+
+void TrainerNode::onRoundTimer() {
+  if (!round_.valid() || round_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  round_timer_.stop();
+  round_.get();  // throws what the round threw: a full disk, say
+  progress_ = session_->progress();
+  ROS_INFO("%s", progress_.line().c_str());
+  goOn();
+}
+
+void TrainerNode::evaluate() {
+  enterStage("evaluation");
+  const int episodes = session_->options().evaluation_episodes;
+  evaluation_ = learning::Evaluation();
+  evaluation_.policy = session_->weightsPath();
+  evaluation_.task = session_->task().name;
+  evaluation_.seed = learning::kHeldOutSeed;
+  if (episodes == 0) return finish();
+  const auto keep = [this, episodes](learning::Trajectory trajectory) {
+    evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+    stage_done_ = static_cast<double>(evaluation_.outcomes.size()) / episodes;
+    ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
+  };
+  play("argmax", learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
+}
+
+void TrainerNode::finish() {
+  session_->finish(evaluation_);
+  enterStage("finished");
+  ROS_INFO("finished: %s", evaluation_.summary().c_str());
+  ROS_INFO("weights: %s, result: %s", session_->weightsPath().c_str(), session_->resultPath().c_str());
+}
+
+void TrainerNode::enterStage(const std::string& stage) {
+  stage_ = stage;
+  stage_done_ = stage == "finished" ? 1 : 0;
+  progress_ = session_->progress();
+  progress_taken_ = ::ros::WallTime::now();
+  publishProgress();
+}
+
+void TrainerNode::publishProgress() {
+  const bool finished = stage_ == "finished";
+  const double since_sec = finished ? 0 : (::ros::WallTime::now() - progress_taken_).toSec();
+  Progress message;
+  message.header.stamp = ::ros::Time::now();
+  message.stage = stage_;
+  message.task = session_->task().name;
+  message.weights = weights_id_;
+  message.trajectories = progress_.trajectories;
+  message.trajectories_total = progress_.trajectories_total;
+  message.stage_done = stage_done_;
+  message.f1 = finished ? evaluation_.f1() : progress_.f1;
+  message.agreement = finished ? evaluation_.agreement() : progress_.agreement;
+  message.loss = progress_.loss;
+  message.trajectories_per_hour = progress_.trajectories_per_hour;
+  message.elapsed_sec = progress_.elapsed_sec + since_sec;
+  message.remaining_sec = std::max(0.0, progress_.remaining_sec - since_sec);
+  progress_publisher_.publish(message);
+}
+
+void TrainerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  status.add("stage", stage_);
+  status.addf("stage done [%]", "%.0f", 100 * stage_done_);
+  status.add("waits for", client_.waitsFor());
+  status.add("weights", weights_id_);
+  status.addf("trajectories", "%lu of %lu", static_cast<unsigned long>(progress_.trajectories),
+              static_cast<unsigned long>(progress_.trajectories_total));
+  status.addf("agreement", "%.3f", progress_.agreement);
+  status.addf("F1", "%.3f", progress_.f1);
+}
+
+}  // namespace early_fusion::nodes
