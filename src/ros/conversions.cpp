@@ -2,6 +2,7 @@
 
 #include <sensor_msgs/image_encodings.h>
 
+#include <boost/make_shared.hpp>
 #include <cmath>
 
 #include "early_fusion/core/error.h"

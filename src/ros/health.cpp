@@ -41,7 +41,8 @@ void Health::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   }
   for (auto& [kind, counter] : drops_) {
     status.add("dropped: " + kind, counter.total);
-    if (counter.total > counter.reported) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "dropped: " + kind);
+    if (counter.total > counter.reported)
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "dropped: " + kind);
     counter.reported = counter.total;
   }
   if (reporter_) reporter_(status);

@@ -55,8 +55,8 @@ PanTiltDriverNode::PanTiltDriverNode(const Options& options)
       rig_(loadRig(options)),
       pan_publisher_(node_.advertise<std_msgs::Float64>(kPanCommandTopic, 1, true)),
       tilt_publisher_(node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1, true)) {
-  action_subscriber_ = node_.subscribe<Action>(
-      kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
+  action_subscriber_ =
+      node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
   if (options_.use_joint_states) {
     joint_subscriber_ = node_.subscribe<sensor_msgs::JointState>(
         kJointStatesTopic, 1, [this](const sensor_msgs::JointStateConstPtr& states) { onJointStates(*states); });

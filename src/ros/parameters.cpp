@@ -1,9 +1,9 @@
 #include "early_fusion/ros/parameters.h"
 
-#include <XmlRpcValue.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <charconv>
 

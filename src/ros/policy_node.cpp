@@ -25,8 +25,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
   set.addChoice("mode", acting.mode, {"argmax", "sample"}, "with weights from a file: the likeliest action, or drawn");
   set.add("seed", acting.seed, "of the draws in mode 'sample'");
-  set.addChoice("precision", acting.precision, {"", "auto", "f32", "bf16"},
-                "of the arithmetic with weights from a file; empty: as they say");
+  set.addChoice("precision", precision, {"stored", "auto", "f32", "bf16"},
+                "of the arithmetic with weights from a file; stored: as they were saved");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");
@@ -41,13 +41,14 @@ PolicyNode::PolicyNode(const Options& options)
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
       action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
       status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)),
-      synchronizer_(Synchronizer::Policy(kImageQueue)) {
-  if (!options_.weights.empty()) loadFile(options_.weights, options_.acting);
+      synchronizer_(SameStamp(kImageQueue)) {
+  if (options_.precision != "stored") options_.acting.precision = options_.precision;
+  if (!options_.weights.empty()) loadFile(options_.weights);
   publishStatus();
   load_server_ = node_.advertiseService(kLoadWeightsService, &PolicyNode::onLoadWeights, this);
   save_server_ = node_.advertiseService(kSaveWeightsService, &PolicyNode::onSaveWeights, this);
-  weights_subscriber_ = node_.subscribe<Weights>(
-      kWeightsTopic, 1, [this](const WeightsConstPtr& message) { onWeights(*message); });
+  weights_subscriber_ =
+      node_.subscribe<Weights>(kWeightsTopic, 1, [this](const WeightsConstPtr& message) { onWeights(*message); });
   camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
       kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) { camera_info_ = message; });
   const auto hints = ::ros::TransportHints().tcpNoDelay();
@@ -113,16 +114,16 @@ void PolicyNode::load(const std::string& id, nn::WeightsFile file, const std::st
   publishStatus();
 }
 
-void PolicyNode::loadFile(const std::string& path, const Acting& acting) {
+void PolicyNode::loadFile(const std::string& path) {
   nn::WeightsFile file = nn::WeightsFile::read(path);
   const auto id = file.metadata.find("id");
-  load(id == file.metadata.end() ? path : id->second, std::move(file), path, acting);
+  load(id == file.metadata.end() ? path : id->second, std::move(file), path, options_.acting);
   ROS_INFO("acting with weights '%s' from %s", weights_id_.c_str(), path.c_str());
 }
 
 bool PolicyNode::onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response) {
   try {
-    loadFile(request.path, policy_.loaded() ? policy_.acting() : options_.acting);
+    loadFile(request.path);
     response.success = true;
     response.message = "acting with weights '" + weights_id_ + "'";
   } catch (const core::Error& error) {

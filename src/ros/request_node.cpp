@@ -35,13 +35,14 @@ core::OptionSet RequestNode::Options::options() {
 
 RequestNode::RequestNode(const Options& options)
     : options_(options),
-      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("asks for", itemList(items_)); }),
+      health_(
+          [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("asks for", itemList(items_)); }),
       items_(splitItems(options.items)),
       request_publisher_(node_.advertise<Request>(kRequestTopic, 10)),
       image_transport_(node_) {
   set_request_server_ = node_.advertiseService(kSetRequestService, &RequestNode::onSetRequest, this);
-  action_subscriber_ = node_.subscribe<Action>(
-      kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
+  action_subscriber_ =
+      node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
   image_subscriber_ = image_transport_.subscribe(kImageTopic, 1, &RequestNode::onImage, this,
                                                  image_transport::TransportHints(options_.image_transport));
 }
@@ -50,8 +51,9 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   health_.count("images");
   const double since_sec = (::ros::WallTime::now() - asked_at_).toSec();
   if (since_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
-  if (waiting_) health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
-                                                       "; is the policy running, with weights that know the items?");
+  if (waiting_)
+    health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
+                                           "; is the policy running, with weights that know the items?");
   asked_.header = image->header;
   asked_.episode = 0;
   asked_.step = step_;

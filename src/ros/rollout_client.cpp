@@ -9,14 +9,13 @@ namespace early_fusion::nodes {
 
 namespace {
 
-constexpr int kStepQueue = 512;            // some ten episodes: the simulator does not wait for who only listens
+constexpr int kStepQueue = 512;  // some ten episodes: the simulator does not wait for who only listens
 constexpr double kSupervisionSec = 0.1;
-constexpr double kStragglerSec = 1.0;      // after a goal's end, how long its last messages may take
+constexpr double kStragglerSec = 1.0;  // after a goal's end, how long its last messages may take
 
 }  // namespace
 
-RolloutClient::RolloutClient(::ros::NodeHandle& node, const sim::World& world, double stall_sec,
-                             Health& health)
+RolloutClient::RolloutClient(::ros::NodeHandle& node, const sim::World& world, double stall_sec, Health& health)
     : world_(world),
       stall_(stall_sec),
       health_(health),
@@ -25,7 +24,7 @@ RolloutClient::RolloutClient(::ros::NodeHandle& node, const sim::World& world, d
       request_subscriber_(node, kRequestTopic, kStepQueue),
       scene_subscriber_(node, kSceneTopic, kStepQueue),
       action_subscriber_(node, kActionTopic, kStepQueue),
-      synchronizer_(Policy(kStepQueue)),
+      synchronizer_(SameStamp(kStepQueue)),
       goal_client_(node, kRunEpisodesAction, false) {
   image_subscriber_.subscribe(image_transport_, kImageTopic, kStepQueue);
   synchronizer_.connectInput(image_subscriber_, request_subscriber_, scene_subscriber_, action_subscriber_);
@@ -35,8 +34,8 @@ RolloutClient::RolloutClient(::ros::NodeHandle& node, const sim::World& world, d
         policy_status_ = status;
         askWhenReady();
       });
-  timer_ = node.createWallTimer(::ros::WallDuration(kSupervisionSec),
-                                [this](const ::ros::WallTimerEvent&) { supervise(); });
+  timer_ =
+      node.createWallTimer(::ros::WallDuration(kSupervisionSec), [this](const ::ros::WallTimerEvent&) { supervise(); });
 }
 
 void RolloutClient::start(const RolloutPlan& plan, std::function<void(learning::Trajectory)> on_trajectory,
@@ -53,9 +52,9 @@ std::string RolloutClient::obstacle() const {
   if (!goal_client_.isServerConnected() || scene_subscriber_.getSubscriber().getNumPublishers() == 0) {
     return "the simulator";
   }
-  const bool right_policy =
-      policy_status_ && policy_status_->weights == plan_.weights && policy_status_->mode == plan_.mode &&
-      (plan_.mode != "sample" || policy_status_->seed == plan_.seed);
+  const bool right_policy = policy_status_ && policy_status_->weights == plan_.weights &&
+                            policy_status_->mode == plan_.mode &&
+                            (plan_.mode != "sample" || policy_status_->seed == plan_.seed);
   if (!right_policy || action_subscriber_.getSubscriber().getNumPublishers() == 0) {
     return "a policy that acts with weights '" + plan_.weights + "' (" + plan_.mode + ")";
   }
@@ -85,8 +84,9 @@ void RolloutClient::askWhenReady() {
   goal_done_ = false;
   last_news_ = ::ros::WallTime::now();
   phase_ = Phase::kPlaying;
-  goal_client_.sendGoal(
-      goal, [this](const actionlib::SimpleClientGoalState& state, const RunEpisodesResultConstPtr&) { onGoalDone(state); });
+  goal_client_.sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state, const RunEpisodesResultConstPtr&) {
+    onGoalDone(state);
+  });
 }
 
 void RolloutClient::onStep(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request,

@@ -1,7 +1,7 @@
 #include "early_fusion/ros/run_node.h"
 
-#include <ros/init.h>
 #include <ros/console.h>
+#include <ros/init.h>
 #include <ros/param.h>
 
 #include <cstring>

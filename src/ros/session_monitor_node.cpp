@@ -14,8 +14,8 @@ core::OptionSet SessionMonitorNode::Options::options() {
 }
 
 SessionMonitorNode::SessionMonitorNode(const Options& options) {
-  progress_subscriber_ = node_.subscribe<Progress>(
-      kProgressTopic, 4, [this](const ProgressConstPtr& progress) { onProgress(*progress); });
+  progress_subscriber_ =
+      node_.subscribe<Progress>(kProgressTopic, 4, [this](const ProgressConstPtr& progress) { onProgress(*progress); });
   timer_ = node_.createWallTimer(::ros::WallDuration(options.period_sec),
                                  [this](const ::ros::WallTimerEvent&) { checkFailure(); });
 }

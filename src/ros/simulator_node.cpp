@@ -26,7 +26,8 @@ SimulatorNode::SimulatorNode(const Options& options)
       world_(sim::loadWorld(options.world)),
       task_(sim::loadTask(options.task)),
       seed_(options.seed),
-      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); }),
+      health_(
+          [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); }),
       publisher_(node_, world_, options.marker_rate_hz),
       goal_server_(node_, kRunEpisodesAction, false) {
   action_subscriber_ = node_.subscribe<Action>(
@@ -92,7 +93,8 @@ void SimulatorNode::onAction(const Action& message) {
   const std::string what = "action " + message.name + " for episode " + std::to_string(message.episode) + ", step " +
                            std::to_string(message.step) + " while waiting for " + whatIsAwaited();
   if (awaited_.isZero()) return health_.drop("unexpected action", what);
-  if (message.episode != play_->key.episode || message.step != static_cast<std::uint32_t>(play_->episode.state().step)) {
+  if (message.episode != play_->key.episode ||
+      message.step != static_cast<std::uint32_t>(play_->episode.state().step)) {
     return health_.drop("stale action", what);
   }
   if (message.header.stamp != awaited_) return health_.drop("action for another image", what + " (stamps differ)");
@@ -172,7 +174,8 @@ bool SimulatorNode::onSetRequest(SetRequest::Request& request, SetRequest::Respo
     const core::Request wanted = vocabulary.request(request.items);
     play_->episode.setRequest(wanted);
     response.message = "asking for " + itemList(vocabulary.names(play_->episode.state().request));
-    if (play_->episode.state().request.size() < wanted.size()) response.message += "; the others are not on the counter";
+    if (play_->episode.state().request.size() < wanted.size())
+      response.message += "; the others are not on the counter";
     response.success = true;
     // A step that is out already is asked anew: the answer to the old request no longer counts.
     if (!awaited_.isZero()) publishStep();

@@ -50,8 +50,8 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim:
   orientation_ = episode.state().orientation;
 
   image_ = imageMessage(std::move(image), camera_header);
-  camera_info_ = boost::make_shared<sensor_msgs::CameraInfo>(cameraInfoMessage(
-      world_->options.image_size, world_->options.horizontal_fov_deg, camera_header));
+  camera_info_ = boost::make_shared<sensor_msgs::CameraInfo>(
+      cameraInfoMessage(world_->options.image_size, world_->options.horizontal_fov_deg, camera_header));
   request_ = boost::make_shared<Request>(requestMessage(episode, key, vocabulary, camera_header));
   scene_ = boost::make_shared<Scene>(sceneMessage(episode, key, steps, vocabulary, previous_action, world_header));
   joint_publisher_.publish(jointStateMessage(world_->rig, orientation_, camera_header));

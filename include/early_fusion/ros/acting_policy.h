@@ -43,8 +43,8 @@ class ActingPolicy {
   /// Field of view of the pictures that it was trained on [deg].
   double horizontalFovDeg() const;
 
-  /// Decides about the next image of an episode. The images before it count when they belong to the same episode and its
-  /// steps follow each other; the same step again replaces its image.
+  /// Decides about the next image of an episode. The images before it count when they belong to the same episode and
+  /// its steps follow each other; the same step again replaces its image.
   /// @param frame (imageSize(), imageSize()). @param items what is requested.
   /// @throws core::Error naming an item that the weights don't know, and the known ones.
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,

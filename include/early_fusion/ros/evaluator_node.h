@@ -11,8 +11,8 @@
 
 namespace early_fusion::nodes {
 
-/// Scores whatever policy is running on episodes of a task, and ends: the same episodes and scores as the command line's
-/// `evaluate`.
+/// Scores whatever policy is running on episodes of a task, and ends: the same episodes and scores as the command
+/// line's `evaluate`.
 class EvaluatorNode {
  public:
   struct Options {

@@ -14,8 +14,8 @@
 
 namespace early_fusion::nodes {
 
-/// Turns the policy's actions into position commands for a real pan-tilt unit: 2 degrees a move, within the URDF's joint
-/// limits, from where the joint states say that it is.
+/// Turns the policy's actions into position commands for a real pan-tilt unit: 2 degrees a move, within the URDF's
+/// joint limits, from where the joint states say that it is.
 class PanTiltDriverNode {
  public:
   struct Options {

@@ -20,13 +20,14 @@
 
 namespace early_fusion::nodes {
 
-/// Answers every image that has a request of the same stamp with an action. Knows nothing of the simulator: any camera's
-/// images will do.
+/// Answers every image that has a request of the same stamp with an action. Knows nothing of the simulator: any
+/// camera's images will do.
 class PolicyNode {
  public:
   struct Options {
-    std::string weights;           ///< a weights file; empty: wait for the topic or the service
-    Acting acting;                 ///< with weights from a file
+    std::string weights;  ///< a weights file; empty: wait for the topic or the service
+    Acting acting;        ///< with weights from a file, but for the precision
+    std::string precision = "stored";
     std::string image_transport = "raw";
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
@@ -45,20 +46,19 @@ class PolicyNode {
   bool onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response);
 
   void load(const std::string& id, nn::WeightsFile file, const std::string& source, const Acting& acting);
-  void loadFile(const std::string& path, const Acting& acting);
+  void loadFile(const std::string& path);
   void publishStatus();
   void publishAnnotated(const core::Image& frame, const std_msgs::Header& header, const Request& request);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
-  using Synchronizer =
-      message_filters::Synchronizer<message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request>>;
+  using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request>;
 
   Options options_;
   ::ros::NodeHandle node_;
   Health health_;
   ActingPolicy policy_;
   std::string weights_id_;
-  Action answer_;             // to the image before
+  Action answer_;              // to the image before
   bool answer_valid_ = false;  // with the weights of now
   sensor_msgs::CameraInfoConstPtr camera_info_;
   ::ros::WallTime annotated_;
@@ -74,7 +74,7 @@ class PolicyNode {
   ::ros::ServiceServer save_server_;
   image_transport::SubscriberFilter image_subscriber_;
   message_filters::Subscriber<Request> request_subscriber_;
-  Synchronizer synchronizer_;
+  message_filters::Synchronizer<SameStamp> synchronizer_;
 };
 
 }  // namespace early_fusion::nodes

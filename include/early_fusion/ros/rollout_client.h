@@ -54,7 +54,7 @@ class RolloutClient {
   /// Empty when nothing keeps the plan from being played.
   std::string obstacle() const;
 
-  using Policy = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request, Scene, Action>;
+  using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request, Scene, Action>;
 
   const sim::World& world_;
   ::ros::WallDuration stall_;
@@ -76,7 +76,7 @@ class RolloutClient {
   message_filters::Subscriber<Request> request_subscriber_;
   message_filters::Subscriber<Scene> scene_subscriber_;
   message_filters::Subscriber<Action> action_subscriber_;
-  message_filters::Synchronizer<Policy> synchronizer_;
+  message_filters::Synchronizer<SameStamp> synchronizer_;
   actionlib::SimpleActionClient<RunEpisodesAction> goal_client_;
   ::ros::WallTimer timer_;
 };

@@ -18,7 +18,7 @@ namespace early_fusion::nodes {
 
 /// Which episodes are wanted, and how they must be played to count.
 struct RolloutPlan {
-  std::string task;             ///< as a RunEpisodes goal names it: simple, medium, hard or a YAML file
+  std::string task;  ///< as a RunEpisodes goal names it: simple, medium, hard or a YAML file
   std::uint64_t seed = 0;
   std::uint64_t first_episode = 0;
   std::uint32_t episodes = 0;
@@ -37,7 +37,8 @@ class RolloutRecorder {
   RolloutRecorder(const sim::World& world, const RolloutPlan& plan);
 
   /// Takes the four messages of one stamp.
-  /// @return the labelled step, valid until the next call of any function; nullptr when it is not of the plan or is known already.
+  /// @return the labelled step, valid until the next call of any function; nullptr when it is not of the plan or is
+  /// known already.
   /// @throws core::Error saying why the step cannot be used; the episode at hand is dropped then.
   const learning::TrajectoryStep* add(const sensor_msgs::Image& image, const Request& request, const Scene& scene,
                                       const Action& action);

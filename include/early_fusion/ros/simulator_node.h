@@ -20,16 +20,16 @@ namespace early_fusion::nodes {
 
 /// The simulated pan-tilt camera: publishes a step, waits for the action that answers it, carries it out, and so on.
 ///
-/// Plays what a RunEpisodes goal asks for, or one episode that `reset` begins, or, with free_run, episode after episode.
-/// An episode is a function of (task, seed, episode) and the actions alone.
+/// Plays what a RunEpisodes goal asks for, or one episode that `reset` begins, or, with free_run, episode after
+/// episode. An episode is a function of (task, seed, episode) and the actions alone.
 class SimulatorNode {
  public:
   struct Options {
-    std::string world;              ///< a world file; empty: config/world.yaml of the package
-    std::string task = "simple";    ///< of free_run, and of `reset` without a task
-    std::uint64_t seed = 1;         ///< likewise
+    std::string world;            ///< a world file; empty: config/world.yaml of the package
+    std::string task = "simple";  ///< of free_run, and of `reset` without a task
+    std::uint64_t seed = 1;       ///< likewise
     bool free_run = false;
-    double rate_hz = 0;             ///< 0: as fast as actions come
+    double rate_hz = 0;  ///< 0: as fast as actions come
     double republish_sec = 1;
     double marker_rate_hz = 5;
     double diagnostic_period_sec = 1;

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <image_transport/camera_publisher.h>
-#include <ros/node_handle.h>
-
 #include <early_fusion/Request.h>
 #include <early_fusion/Scene.h>
+#include <image_transport/image_transport.h>
+#include <ros/node_handle.h>
 
 #include <memory>
 #include <string>

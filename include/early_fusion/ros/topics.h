@@ -26,7 +26,7 @@ inline constexpr char kLoadWeightsService[] = "load_weights";
 inline constexpr char kSaveWeightsService[] = "save_weights";
 
 // Of the trainer.
-inline constexpr char kWeightsTopic[] = "weights";    ///< latched
+inline constexpr char kWeightsTopic[] = "weights";  ///< latched
 inline constexpr char kExpertTopic[] = "expert";
 inline constexpr char kProgressTopic[] = "progress";  ///< latched
 

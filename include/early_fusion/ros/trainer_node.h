@@ -13,8 +13,8 @@
 
 namespace early_fusion::nodes {
 
-/// Oracle and trainer: has episodes played, labels them with the expert, trains on them in rounds, publishes the weights,
-/// and in the end scores them on held-out episodes.
+/// Oracle and trainer: has episodes played, labels them with the expert, trains on them in rounds, publishes the
+/// weights, and in the end scores them on held-out episodes.
 ///
 /// What it learns is what the command line's `train` learns with the same options, bit for bit. It goes on from its
 /// checkpoint when it is respawned. Training runs in a thread of its own; everything else in the one that spins.
