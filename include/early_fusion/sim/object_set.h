@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "early_fusion/core/vocabulary.h"
@@ -22,6 +23,11 @@ struct Object {
 /// The items that can stand on the counter, in the order of their indices.
 class ObjectSet {
  public:
+  ObjectSet() = default;
+
+  /// Objects made by a program. @throws Error when a name is empty or stands twice.
+  explicit ObjectSet(std::vector<Object> objects) : objects_(std::move(objects)), vocabulary_(namesOf(objects_)) {}
+
   /// Reads `objects: [{name, mesh, scale}, ...]`; mesh paths are relative to the YAML file.
   /// @throws Error naming file, line, key and value.
   static ObjectSet load(const std::string& yaml_file, int max_triangles);
@@ -31,6 +37,12 @@ class ObjectSet {
   const core::Vocabulary& vocabulary() const { return vocabulary_; }
 
  private:
+  static core::Vocabulary namesOf(const std::vector<Object>& objects) {
+    std::vector<std::string> names;
+    for (const Object& object : objects) names.push_back(object.name);
+    return core::Vocabulary(names);
+  }
+
   std::vector<Object> objects_;
   core::Vocabulary vocabulary_;
 };

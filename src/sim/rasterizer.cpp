@@ -1,0 +1,158 @@
+#include "early_fusion/sim/rasterizer.h"
+
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "early_fusion/core/error.h"
+#include "fragment_shader.h"
+#include "mesh_drawer.h"
+#include "projection.h"
+#include "render_assets.h"
+#include "sample_buffer.h"
+#include "shadow_map.h"
+
+namespace early_fusion::sim {
+
+namespace {
+
+constexpr int kSizeStep = 16;                                              // [px]
+constexpr int kMaxImageSize = kMaxScreenSize / 2 / kSizeStep * kSizeStep;  // [px]
+
+int checkedSize(int image_size) {
+  if (image_size >= kSizeStep && image_size <= kMaxImageSize && image_size % kSizeStep == 0) return image_size;
+  throw core::Error("image_size is " + std::to_string(image_size) + " px; it must be a multiple of " +
+                    std::to_string(kSizeStep) + " up to " + std::to_string(kMaxImageSize));
+}
+
+LinearForm cameraAxis(const RenderPose& world_from_camera, int axis) {
+  LinearForm form{{0.f, 0.f, 0.f}, 0.f};
+  for (int row = 0; row < 3; ++row) {
+    form.factor[row] = world_from_camera.rotation[row][axis];
+    form.constant -= form.factor[row] * world_from_camera.translation[row];
+  }
+  return form;
+}
+
+Projection perspective(const Viewpoint& viewpoint) {
+  Projection projection;
+  projection.x = viewpoint.focal_length * cameraAxis(viewpoint.world_from_camera, 0);
+  projection.y = viewpoint.focal_length * cameraAxis(viewpoint.world_from_camera, 1);
+  projection.w = cameraAxis(viewpoint.world_from_camera, 2);
+  projection.depth = {};
+  projection.half_width = projection.half_height = viewpoint.centre;
+  return projection;
+}
+
+bool samePlace(const Instance& a, const Instance& b) {
+  return a.item == b.item && a.x == b.x && a.y == b.y && a.theta == b.theta;
+}
+
+}  // namespace
+
+class Rasterizer::Implementation {
+ public:
+  Implementation(const World& world, int image_size)
+      : world_(world),
+        image_size_(checkedSize(image_size)),
+        centre_(static_cast<float>(image_size * kSubsamples)),
+        focal_length_(static_cast<float>(2 * kSubsamples * focalLength(image_size, world.options.horizontal_fov_deg))),
+        assets_(sharedRenderAssets(world)),
+        shadow_map_(world),
+        samples_(2 * image_size, 2 * image_size, true),
+        shader_(*assets_, shadow_map_, image_size) {}
+
+  void setScene(const std::vector<Instance>& instances, InstanceMask present) {
+    std::vector<Instance> standing;
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      if (present >> i & 1u) standing.push_back(instances[i]);
+    }
+    if (std::equal(standing.begin(), standing.end(), standing_.begin(), standing_.end(), samePlace)) return;
+    standing_ = std::move(standing);
+    objects_.clear();
+    for (const Instance& instance : standing_) {
+      assert(instance.item >= 0 && instance.item < world_.objects.size());
+      objects_.push_back({&assets_->objects[instance.item], renderPose(worldFromObject(world_, instance))});
+    }
+    shadow_map_.draw(objects_);
+  }
+
+  void render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
+    image.width = image.height = image_size_;
+    image.rgb.resize(3u * image_size_ * image_size_);
+    const Viewpoint viewpoint{renderPose(world_from_camera), focal_length_, centre_};
+    const Projection projection = perspective(viewpoint);
+    samples_.clear(0.f);
+    drawer_.clear();
+    for (const ShadowMap::Caster& object : objects_) {
+      drawer_.draw(*object.mesh, object.world_from_mesh, projection, samples_);
+    }
+    for (const RenderMesh& cluster : assets_->kitchen) drawer_.draw(cluster, identity_, projection, samples_);
+    shader_.begin(viewpoint, drawer_);
+    for (int y = 0; y < image_size_; ++y) {
+      for (int x = 0; x < image_size_; ++x) addFragments(x, y);
+    }
+    shader_.finish(image);
+  }
+
+ private:
+  /// One fragment for each of the different triangles that the pixel's four samples see.
+  void addFragments(int x, int y) {
+    const std::int32_t* ids = samples_.ids() + samples_.pixelOffset(x, y);
+    const std::int32_t pixel = y * image_size_ + x;
+    const auto corner_x = static_cast<float>(2 * kSubsamples * x), corner_y = static_cast<float>(2 * kSubsamples * y);
+    if (ids[0] == ids[1] && ids[0] == ids[2] && ids[0] == ids[3]) {
+      shader_.add(ids[0], corner_x + kSubsamples, corner_y + kSubsamples, 4, pixel);
+      return;
+    }
+    for (int i = 0; i < 4; ++i) {
+      bool is_first = true;
+      for (int j = 0; j < i; ++j) is_first = is_first && ids[j] != ids[i];
+      if (!is_first) continue;
+      int count = 0, right = 0, below = 0;
+      for (int j = i; j < 4; ++j) {
+        if (ids[j] != ids[i]) continue;
+        ++count;
+        right += j % 2;
+        below += j / 2;
+      }
+      const float share = static_cast<float>(kSubsamples) / static_cast<float>(count);
+      shader_.add(ids[i], corner_x + 0.5f * kSubsamples + share * static_cast<float>(right),
+                  corner_y + 0.5f * kSubsamples + share * static_cast<float>(below), count, pixel);
+    }
+  }
+
+  static double focalLength(int image_size, double fov_deg) {
+    return 0.5 * image_size / std::tan(0.5 * fov_deg * 3.14159265358979323846 / 180.0);
+  }
+
+  const World& world_;
+  int image_size_;
+  float centre_;        // of the picture [subsamples]
+  float focal_length_;  // [subsamples]
+  std::shared_ptr<const RenderAssets> assets_;
+  ShadowMap shadow_map_;
+  SampleBuffer samples_;
+  MeshDrawer drawer_;
+  FragmentShader shader_;
+  std::vector<Instance> standing_;
+  std::vector<ShadowMap::Caster> objects_;
+  const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());
+};
+
+Rasterizer::Rasterizer(const World& world, int image_size)
+    : implementation_(std::make_unique<Implementation>(world, image_size)) {}
+
+Rasterizer::~Rasterizer() = default;
+Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
+Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
+
+void Rasterizer::setScene(const std::vector<Instance>& instances, InstanceMask present) {
+  implementation_->setScene(instances, present);
+}
+
+void Rasterizer::render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
+  implementation_->render(world_from_camera, image);
+}
+
+}  // namespace early_fusion::sim
