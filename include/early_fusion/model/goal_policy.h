@@ -35,10 +35,10 @@ struct Sample {
 /// config/models/*.yaml: the shape of the network.
 struct PolicyOptions {
   std::string kind = "early_fusion";
-  int channels = 16;      ///< of every block, of the hidden layer and of the embedding; a multiple of 16 in [16, 256]
-  int fusion_block = 1;   ///< the goal joins the output of this block, [0, 3]; 0: the image itself
-  double dropout = 0.5;   ///< after the hidden layer, [0, 0.95]
-  int image_size = 128;   ///< [px], a multiple of 16
+  int channels = 16;     ///< of every block, of the hidden layer and of the embedding; a multiple of 16 in [16, 256]
+  int fusion_block = 1;  ///< the goal joins the output of this block, [0, 3]; 0: the image itself
+  double dropout = 0.5;  ///< after the hidden layer, [0, 0.95]
+  int image_size = 128;  ///< [px], a multiple of 16
   std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes in it natively
 
   core::OptionSet options();
@@ -48,8 +48,8 @@ using Probabilities = Eigen::Matrix<float, Eigen::Dynamic, core::kActionCount, E
 
 /// A goal-conditioned policy network: images and a request in, a distribution over the seven actions out.
 ///
-/// Deterministic: the same weights, samples and thread count give the same bits, and a row of predict() does not depend on the
-/// other rows. One thread at a time; it uses OpenMP inside.
+/// Deterministic: the same weights, samples and thread count give the same bits, and a row of predict() does not depend
+/// on the other rows. One thread at a time; it uses OpenMP inside.
 class GoalPolicy {
  public:
   virtual ~GoalPolicy() = default;

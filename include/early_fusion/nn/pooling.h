@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+
+#include "early_fusion/nn/lanes.h"
+
+namespace early_fusion::nn {
+
+/// A map of one image, (height, width, channels), before pooling; even edges, channels a multiple of kLanes.
+struct MapShape {
+  int height;
+  int width;
+  int channels;
+
+  int pooledPositions() const { return height / 2 * (width / 2); }
+};
+
+/// A bias that depends on where a pixel is: (row case, column case, channel), 3x3 cases. Case 0 is the first row
+/// (column), 2 the last, 1 all between: what zero padding does to a constant input of a 3x3 convolution.
+inline constexpr int kBorderCases = 9;
+
+inline int borderCase(int pixel, int size) { return pixel == 0 ? 0 : pixel == size - 1 ? 2 : 1; }
+
+/// What `choice` holds where ReLU let nothing through; else 2 * row + column of the greatest in the 2x2 window.
+inline constexpr std::uint8_t kNoChoice = 4;
+
+/// Adds the bias, takes the maximum of every 2x2 window, and ReLU: the pass after a convolution, in training.
+/// y (H,W,C), bias (9,C) -> z (H/2,W/2,C), choice (H/2,W/2,C); writes to sums (2,C) the sum of z and of its squares.
+template <class T>
+void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std::uint8_t* choice, double* sums);
+
+/// The same for inference, with batch norm's scale and shift (C) applied: x = scale * z + shift, pooled rows
+/// [first_row, last_row) only.
+template <class T>
+void poolNormalise(const MapShape& shape, const T* y, const float* bias, const float* scale, const float* shift,
+                   int first_row, int last_row, T* x);
+
+/// Batch norm in training, z (positions, C) -> x = scale * z + shift.
+template <class T>
+void normalise(const T* z, int positions, int channels, const float* scale, const float* shift, T* x);
+
+/// Writes to sums (2,C) the sum of dx and of dx * z over positions; both (positions, C).
+template <class T>
+void sumGradients(const T* dx, const T* z, int positions, int channels, double* sums);
+
+/// The gradient of the pooled map as a function of the block's output's: dz = a * dx + b * z + c, all (C).
+struct NormGradient {
+  const float* a;
+  const float* b;
+  const float* c;
+};
+
+/// Backward of poolForward() and of batch norm: dx, z, choice (H/2,W/2,C) -> dy (H,W,C), and border_sums (9,C), the
+/// sum of dy over each border case: the gradient of `bias`.
+template <class T>
+void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
+                  T* dy, double* border_sums);
+
+}  // namespace early_fusion::nn

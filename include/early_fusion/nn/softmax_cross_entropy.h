@@ -1,0 +1,17 @@
+#pragma once
+
+#include "early_fusion/nn/tiled_goal.h"
+
+namespace early_fusion::nn {
+
+/// logits (classes) -> probabilities (classes), which sum to 1.
+void softmax(const float* logits, int classes, float* probabilities);
+
+/// The weighted mean over rows of the cross-entropy between targets and the softmax of logits: sum_i w_i CE_i / sum_i
+/// w_i.
+/// @param targets (rows,classes), each row a distribution. @param weights (rows), >= 0 with a positive sum.
+/// @param dlogits (rows,classes), the loss's gradient.
+double softmaxCrossEntropy(const Matrix& logits, const Matrix& targets, const Eigen::VectorXd& weights, int rows,
+                           Matrix& dlogits);
+
+}  // namespace early_fusion::nn

@@ -1,0 +1,168 @@
+#include "early_fusion/nn/conv_block.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace early_fusion::nn {
+
+namespace {
+
+constexpr int kTaps = 9;
+
+}  // namespace
+
+template <class T>
+ConvBlock<T>::ConvBlock(Parameters& parameters, const std::string& name, const ConvBlockShape& shape,
+                        bool input_gradient, int threads)
+    : shape_(shape),
+      parameters_(parameters),
+      in_channels_(shape.image_channels + shape.goal_channels),
+      weight_(parameters.addParameter(name + ".conv.weight", {shape.out_channels, in_channels_, 3, 3})),
+      bias_(parameters.addParameter(name + ".conv.bias", {shape.out_channels})),
+      norm_(parameters, name + ".norm", shape.out_channels),
+      goal_(shape.goal_channels, shape.out_channels),
+      convolution_({shape.stored_channels, shape.out_channels, shape.size, shape.size}, input_gradient, threads),
+      border_bias_(std::size_t(threads) * kBorderCases * shape.out_channels),
+      staging_(std::size_t(shape.out_channels) * shape.stored_channels * kTaps) {}
+
+template <class T>
+void ConvBlock<T>::initialise(core::Random& random) {
+  const double bound = 1.0 / std::sqrt(double(in_channels_) * kTaps);
+  float* values = parameters_.values().data();
+  for (int i = 0; i < shape_.out_channels * in_channels_ * kTaps; ++i) {
+    values[weight_ + i] = static_cast<float>(random.uniform(-bound, bound));
+  }
+  for (int i = 0; i < shape_.out_channels; ++i) {
+    values[bias_ + i] = static_cast<float>(random.uniform(-bound, bound));
+  }
+  norm_.initialise();
+}
+
+template <class T>
+void ConvBlock<T>::loadWeights() {
+  const float* weights = parameters_.values().data() + weight_;
+  goal_.setWeights(weights, in_channels_);
+  const int used = shape_.image_channels * kTaps;
+  for (int o = 0; o < shape_.out_channels; ++o) {
+    const float* from = weights + std::size_t(o) * in_channels_ * kTaps;
+    float* to = &staging_[std::size_t(o) * shape_.stored_channels * kTaps];
+    for (int i = 0; i < used; ++i) to[i] = shape_.input_scale * from[i];
+    std::fill(to + used, to + shape_.stored_channels * kTaps, 0.f);
+  }
+  convolution_.setWeights(staging_.data());
+}
+
+template <class T>
+void ConvBlock<T>::reserve(int images) {
+  const std::size_t size = std::size_t(images) * outputSize();
+  pooled_.reserve(size);
+  choices_.reserve(size);
+  output_gradients_.reserve(size);
+  share_gradients_.reserve(ImageShares(images).count * convolution_.weightsGradientSize());
+  image_gradients_.reserve(border_bias_.size() / (kBorderCases * shape_.out_channels) *
+                           convolution_.weightsGradientSize());
+  norm_.reserve(images);
+  goal_.reserve(images);
+}
+
+template <class T>
+void ConvBlock<T>::forward(int thread, int image, const T* x, const float* goal, T* y) {
+  float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
+  const std::size_t at = std::size_t(image) * outputSize();
+  goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
+  convolution_.forward(thread, x, y);
+  poolForward(mapShape(), y, border_bias, &pooled_[at], &choices_[at], norm_.forwardSums(image));
+}
+
+template <class T>
+void ConvBlock<T>::finishForward(int images) {
+  norm_.finishForward(images, mapShape().pooledPositions());
+}
+
+template <class T>
+void ConvBlock<T>::output(int image, T* out) const {
+  normalise(&pooled_[std::size_t(image) * outputSize()], mapShape().pooledPositions(), shape_.out_channels,
+            norm_.scale(), norm_.shift(), out);
+}
+
+template <class T>
+void ConvBlock<T>::sumOutputGradient(int image) {
+  const std::size_t at = std::size_t(image) * outputSize();
+  sumGradients(&output_gradients_[at], &pooled_[at], mapShape().pooledPositions(), shape_.out_channels,
+               norm_.backwardSums(image));
+}
+
+template <class T>
+void ConvBlock<T>::beginBackward(int images) {
+  norm_gradient_ = norm_.finishBackward(images, mapShape().pooledPositions());
+}
+
+template <class T>
+void ConvBlock<T>::backward(int thread, int share, bool first_of_share, int image, const T* x, T* dy, T* dx) {
+  const std::size_t at = std::size_t(image) * outputSize();
+  poolBackward(mapShape(), &output_gradients_[at], &pooled_[at], &choices_[at], norm_gradient_, dy,
+               goal_.borderSums(image));
+  const std::size_t size = convolution_.weightsGradientSize();
+  float* sum = &share_gradients_[share * size];
+  if (first_of_share) {
+    convolution_.backwardWeights(thread, x, dy, sum);
+  } else {
+    float* own = &image_gradients_[thread * size];
+    convolution_.backwardWeights(thread, x, dy, own);
+    for (std::size_t i = 0; i < size; ++i) sum[i] += own[i];
+  }
+  if (dx != nullptr) convolution_.backwardInput(thread, dy, dx);
+}
+
+template <class T>
+void ConvBlock<T>::writeWeightsGradient(int shares, int threads) {
+  const std::size_t size = convolution_.weightsGradientSize();
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::size_t start = 0; start < size; start += 1024) {
+    const std::size_t end = std::min(start + 1024, size);
+    for (int share = 1; share < shares; ++share) {
+      const float* from = &share_gradients_[share * size];
+      for (std::size_t i = start; i < end; ++i) share_gradients_[i] += from[i];
+    }
+  }
+  convolution_.weightsGradient(share_gradients_.data(), staging_.data());
+  float* gradients = parameters_.gradients().data() + weight_;
+  for (int o = 0; o < shape_.out_channels; ++o) {
+    const float* from = &staging_[std::size_t(o) * shape_.stored_channels * kTaps];
+    float* to = gradients + std::size_t(o) * in_channels_ * kTaps;
+    for (int i = 0; i < shape_.image_channels * kTaps; ++i) to[i] = shape_.input_scale * from[i];
+  }
+}
+
+template <class T>
+void ConvBlock<T>::finishBackward(int images, const Matrix& goals, Matrix& dgoals, int threads) {
+  writeWeightsGradient(ImageShares(images).count, threads);
+  float* gradients = parameters_.gradients().data();
+  goal_.backward(goals, images, in_channels_, gradients + bias_, gradients + weight_, dgoals);
+}
+
+template <class T>
+void ConvBlock<T>::predict(int thread, const T* x, const float* goal, T* y, T* out) {
+  float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
+  goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
+  convolution_.forward(thread, x, y);
+  poolNormalise(mapShape(), y, border_bias, norm_.inferenceScale(), norm_.inferenceShift(), 0, shape_.size / 2, out);
+}
+
+template <class T>
+void ConvBlock<T>::predictOnAllThreads(const T* x, const float* goal, T* y, T* out, int threads) {
+  goal_.forward(goal, parameters_.values().data() + bias_, border_bias_.data());
+  convolution_.forwardOnAllThreads(x, y);
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int row = 0; row < shape_.size / 2; ++row) {
+    poolNormalise(mapShape(), y, border_bias_.data(), norm_.inferenceScale(), norm_.inferenceShift(), row, row + 1,
+                  out);
+  }
+}
+
+template class ConvBlock<float>;
+template class ConvBlock<bfloat16>;
+
+}  // namespace early_fusion::nn

@@ -1,0 +1,208 @@
+#include "early_fusion/nn/pooling.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // see lanes.h
+
+namespace early_fusion::nn {
+
+namespace {
+
+/// The greatest number of a 2x2 window in each channel, and which of the four it is; the first where several are.
+struct Greatest {
+  Lanes value;
+  IntLanes index;
+};
+
+inline Greatest greatest(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+  Greatest best{a, IntLanes{}};
+  best.index = b > best.value ? IntLanes{} + 1 : best.index;
+  best.value = b > best.value ? b : best.value;
+  best.index = c > best.value ? IntLanes{} + 2 : best.index;
+  best.value = c > best.value ? c : best.value;
+  best.index = d > best.value ? IntLanes{} + 3 : best.index;
+  best.value = d > best.value ? d : best.value;
+  return best;
+}
+
+inline void storeBytes(std::uint8_t* to, const IntLanes& v) {
+  const ByteLanes bytes = __builtin_convertvector(v, ByteLanes);
+  std::memcpy(to, &bytes, sizeof bytes);
+}
+
+inline IntLanes loadBytes(const std::uint8_t* from) {
+  return __builtin_convertvector(loadVector<ByteLanes>(from), IntLanes);
+}
+
+/// The window at (row, column) of a map whose rows and columns may be the first or the last, channels [c, c + kLanes).
+template <class T>
+Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int row, int column, int c) {
+  Lanes v[4];
+  for (int q = 0; q < 4; ++q) {
+    const int py = 2 * row + q / 2;
+    const int px = 2 * column + q % 2;
+    const int border = 3 * borderCase(py, shape.height) + borderCase(px, shape.width);
+    v[q] = loadLanes(y + (std::size_t(py) * shape.width + px) * shape.channels + c) +
+           loadLanes(bias + border * shape.channels + c);
+  }
+  return greatest(v[0], v[1], v[2], v[3]);
+}
+
+/// Calls sink(column, greatest) for every window along one pooled row.
+template <class T, class Sink>
+inline void poolRow(const MapShape& shape, const T* y, const float* bias, int row, int c, const Sink& sink) {
+  const int columns = shape.width / 2;
+  const int channels = shape.channels;
+  if (row == 0 || row == shape.height / 2 - 1) {
+    for (int column = 0; column < columns; ++column) sink(column, borderWindow(shape, y, bias, row, column, c));
+    return;
+  }
+  const Lanes inner_bias = loadLanes(bias + 4 * channels + c);
+  const T* top = y + std::size_t(2 * row) * shape.width * channels + c;
+  const T* bottom = top + std::size_t(shape.width) * channels;
+  sink(0, borderWindow(shape, y, bias, row, 0, c));
+  for (int column = 1; column < columns - 1; ++column) {
+    const std::size_t left = std::size_t(2 * column) * channels;
+    Greatest best = greatest(loadLanes(top + left), loadLanes(top + left + channels), loadLanes(bottom + left),
+                             loadLanes(bottom + left + channels));
+    best.value += inner_bias;
+    sink(column, best);
+  }
+  if (columns > 1) sink(columns - 1, borderWindow(shape, y, bias, row, columns - 1, c));
+}
+
+/// Not max(v, 0): a NaN must not vanish.
+inline Lanes relu(const Lanes& v) { return v < 0.f ? Lanes{} : v; }
+
+/// What T makes of v, so that statistics are those of the numbers that are stored.
+inline Lanes rounded(const Lanes& v, const float*) { return v; }
+inline Lanes rounded(const Lanes&, const bfloat16* stored) { return loadLanes(stored); }
+
+}  // namespace
+
+template <class T>
+void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std::uint8_t* choice, double* sums) {
+  const int channels = shape.channels;
+  const int columns = shape.width / 2;
+  std::memset(sums, 0, 2 * sizeof(double) * channels);
+  for (int row = 0; row < shape.height / 2; ++row) {
+    for (int c = 0; c < channels; c += kLanes) {
+      const std::size_t start = std::size_t(row) * columns * channels + c;
+      Lanes sum{}, square_sum{};
+      poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
+        const std::size_t at = start + std::size_t(column) * channels;
+        const Lanes positive = relu(best.value);
+        storeLanes(z + at, positive);
+        const Lanes kept = rounded(positive, z + at);
+        sum += kept;
+        square_sum += kept * kept;
+        storeBytes(choice + at, best.value > 0.f ? best.index : IntLanes{} + kNoChoice);
+      });
+      addTo(sums + c, sum);
+      addTo(sums + channels + c, square_sum);
+    }
+  }
+}
+
+template <class T>
+void poolNormalise(const MapShape& shape, const T* y, const float* bias, const float* scale, const float* shift,
+                   int first_row, int last_row, T* x) {
+  const int channels = shape.channels;
+  for (int row = first_row; row < last_row; ++row) {
+    for (int c = 0; c < channels; c += kLanes) {
+      T* out = x + std::size_t(row) * (shape.width / 2) * channels + c;
+      const Lanes scales = loadLanes(scale + c);
+      const Lanes shifts = loadLanes(shift + c);
+      poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
+        storeLanes(out + std::size_t(column) * channels, scales * relu(best.value) + shifts);
+      });
+    }
+  }
+}
+
+template <class T>
+void normalise(const T* z, int positions, int channels, const float* scale, const float* shift, T* x) {
+  for (int c = 0; c < channels; c += kLanes) {
+    const Lanes scales = loadLanes(scale + c);
+    const Lanes shifts = loadLanes(shift + c);
+    for (std::size_t i = 0; i < std::size_t(positions); ++i) {
+      storeLanes(x + i * channels + c, scales * loadLanes(z + i * channels + c) + shifts);
+    }
+  }
+}
+
+template <class T>
+void sumGradients(const T* dx, const T* z, int positions, int channels, double* sums) {
+  constexpr int kRun = 64;  // summed in float before it goes to a double
+  std::memset(sums, 0, 2 * sizeof(double) * channels);
+  for (int c = 0; c < channels; c += kLanes) {
+    for (int start = 0; start < positions; start += kRun) {
+      const int end = start + kRun < positions ? start + kRun : positions;
+      Lanes sum{}, product_sum{};
+      for (std::size_t i = start; i < std::size_t(end); ++i) {
+        const Lanes gradient = loadLanes(dx + i * channels + c);
+        sum += gradient;
+        product_sum += gradient * loadLanes(z + i * channels + c);
+      }
+      addTo(sums + c, sum);
+      addTo(sums + channels + c, product_sum);
+    }
+  }
+}
+
+namespace {
+
+/// Adds one window's gradient dz to the sums of the border cases that its pixels belong to.
+inline void addBorderWindow(const MapShape& shape, const Lanes& dz, const IntLanes& choice, int row, int column,
+                            Lanes* sums) {
+  for (int q = 0; q < 4; ++q) {
+    const int border = 3 * borderCase(2 * row + q / 2, shape.height) + borderCase(2 * column + q % 2, shape.width);
+    sums[border] += choice == q ? dz : Lanes{};
+  }
+}
+
+}  // namespace
+
+template <class T>
+void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
+                  T* dy, double* border_sums) {
+  const int rows = shape.height / 2;
+  const int columns = shape.width / 2;
+  const int channels = shape.channels;
+  std::memset(border_sums, 0, kBorderCases * sizeof(double) * channels);
+  for (int row = 0; row < rows; ++row) {
+    for (int c = 0; c < channels; c += kLanes) {
+      const Lanes a = loadLanes(norm.a + c), b = loadLanes(norm.b + c), constant = loadLanes(norm.c + c);
+      T* top = dy + std::size_t(2 * row) * shape.width * channels + c;
+      T* bottom = top + std::size_t(shape.width) * channels;
+      Lanes sums[kBorderCases]{};
+      for (int column = 0; column < columns; ++column) {
+        const std::size_t at = (std::size_t(row) * columns + column) * channels + c;
+        const std::size_t left = std::size_t(2 * column) * channels;
+        const IntLanes chosen = loadBytes(choice + at);
+        const Lanes dz = a * loadLanes(dx + at) + b * loadLanes(z + at) + constant;
+        storeLanes(top + left, chosen == 0 ? dz : Lanes{});
+        storeLanes(top + left + channels, chosen == 1 ? dz : Lanes{});
+        storeLanes(bottom + left, chosen == 2 ? dz : Lanes{});
+        storeLanes(bottom + left + channels, chosen == 3 ? dz : Lanes{});
+        if (row == 0 || row == rows - 1 || column == 0 || column == columns - 1) {
+          addBorderWindow(shape, dz, chosen, row, column, sums);
+        } else {
+          sums[4] += chosen < kNoChoice ? dz : Lanes{};
+        }
+      }
+      for (int border = 0; border < kBorderCases; ++border) addTo(border_sums + border * channels + c, sums[border]);
+    }
+  }
+}
+
+#define EARLY_FUSION_INSTANTIATE(T)                                                                                  \
+  template void poolForward<T>(const MapShape&, const T*, const float*, T*, std::uint8_t*, double*);                 \
+  template void poolNormalise<T>(const MapShape&, const T*, const float*, const float*, const float*, int, int, T*); \
+  template void normalise<T>(const T*, int, int, const float*, const float*, T*);                                    \
+  template void sumGradients<T>(const T*, const T*, int, int, double*);                                              \
+  template void poolBackward<T>(const MapShape&, const T*, const T*, const std::uint8_t*, const NormGradient&, T*,   \
+                                double*);
+EARLY_FUSION_INSTANTIATE(float)
+EARLY_FUSION_INSTANTIATE(bfloat16)
+#undef EARLY_FUSION_INSTANTIATE
+
+}  // namespace early_fusion::nn

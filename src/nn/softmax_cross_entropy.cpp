@@ -1,0 +1,38 @@
+#include "early_fusion/nn/softmax_cross_entropy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace early_fusion::nn {
+
+void softmax(const float* logits, int classes, float* probabilities) {
+  const float greatest = *std::max_element(logits, logits + classes);
+  double sum = 0;
+  for (int k = 0; k < classes; ++k) sum += std::exp(double(logits[k]) - greatest);
+  for (int k = 0; k < classes; ++k) {
+    probabilities[k] = static_cast<float>(std::exp(double(logits[k]) - greatest) / sum);
+  }
+}
+
+double softmaxCrossEntropy(const Matrix& logits, const Matrix& targets, const Eigen::VectorXd& weights, int rows,
+                           Matrix& dlogits) {
+  const double weight_sum = weights.head(rows).sum();
+  const Eigen::Index classes = logits.cols();
+  double loss = 0;
+  for (int i = 0; i < rows; ++i) {
+    const double greatest = logits.row(i).maxCoeff();
+    double sum = 0;
+    for (Eigen::Index k = 0; k < classes; ++k) sum += std::exp(logits(i, k) - greatest);
+    const double log_sum = greatest + std::log(sum);
+    const double weight = weights[i] / weight_sum;
+    const double target_sum = targets.row(i).cast<double>().sum();
+    for (Eigen::Index k = 0; k < classes; ++k) {
+      const double log_probability = logits(i, k) - log_sum;
+      loss -= weight * targets(i, k) * log_probability;
+      dlogits(i, k) = static_cast<float>(weight * (target_sum * std::exp(log_probability) - targets(i, k)));
+    }
+  }
+  return loss;
+}
+
+}  // namespace early_fusion::nn
