@@ -2,35 +2,67 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "early_fusion/sim/placed_hull.h"
+#include "early_fusion/sim/silhouette.h"
 
 namespace early_fusion::sim {
 
 namespace {
 
-/// Distances from the camera centre to the hulls, each worked out once for as long as the centre stays where it is:
-/// where pan and tilt axes meet in the camera, that is once per scene.
-class Distances {
- public:
-  explicit Distances(const std::vector<PlacedHull>& hulls) : hulls_(hulls), distances_(hulls.size(), -1) {}
+/// What one hull looks like from the camera's centre.
+struct View {
+  Eigen::Vector3d direction;  ///< to the middle of the hull
+  double widest_cosine;       ///< a cone whose axis is farther from it than this cannot meet the hull
+  double distance;            ///< to the hull; 0 with the camera inside, and then there is no outline
+  std::optional<Silhouette> outline;
+};
 
-  void moveTo(const Eigen::Vector3d& camera) {
-    if ((camera - camera_).norm() < 1e-7) return;
-    camera_ = camera;
-    std::fill(distances_.begin(), distances_.end(), -1);
+View viewOf(const PlacedHull& hull, const Eigen::Vector3d& camera) {
+  View view;
+  const Eigen::Vector3d to_center = hull.center() - camera;
+  const double far = to_center.norm();
+  view.direction = to_center.normalized();
+  view.widest_cosine =
+      far > hull.radius() ? std::cos(std::min(M_PI, kConeHalfAngleRad + std::asin(hull.radius() / far))) : -1.0;
+  Eigen::Vector3d nearest = hull.center();
+  view.distance = hull.distanceTo(camera, &nearest);
+  if (view.distance > 0) view.outline.emplace(hull.corners(), camera, nearest - camera);
+  return view;
+}
+
+bool inCone(const View& view, const Eigen::Vector3d& axis) {
+  if (view.direction.dot(axis) < view.widest_cosine) return false;
+  return !view.outline || view.outline->meetsCone(axis, kConeHalfAngleRad);
+}
+
+/// The views of all hulls, worked out anew only when the camera's centre has moved: where the pan and tilt axes meet in
+/// the camera, that is once per scene.
+class Views {
+ public:
+  Views(const World& world, const std::vector<Instance>& instances) {
+    for (const Instance& instance : instances) {
+      hulls_.emplace_back(world.objects[instance.item].hull, worldFromObject(world, instance));
+    }
   }
 
-  double to(std::size_t instance) {
-    if (distances_[instance] < 0) distances_[instance] = hulls_[instance].distanceTo(camera_);
-    return distances_[instance];
+  const std::vector<View>& from(const Eigen::Vector3d& camera) {
+    constexpr double kSamePlace = 1e-7;  // [m]
+    if (views_.empty() || (camera - camera_).norm() > kSamePlace) {
+      camera_ = camera;
+      views_.clear();
+      for (const PlacedHull& hull : hulls_) views_.push_back(viewOf(hull, camera));
+    }
+    return views_;
   }
 
  private:
-  const std::vector<PlacedHull>& hulls_;
-  std::vector<double> distances_;
-  Eigen::Vector3d camera_ = Eigen::Vector3d::Constant(HUGE_VAL);
+  std::vector<PlacedHull> hulls_;
+  Eigen::Vector3d camera_;
+  std::vector<View> views_;
 };
 
 }  // namespace
@@ -38,12 +70,7 @@ class Distances {
 ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
     : lattice_(world.rig.lattice()), orientations_of_(instances.size()) {
   assert(instances.size() <= static_cast<std::size_t>(kMaxInstances));
-  std::vector<PlacedHull> hulls;
-  hulls.reserve(instances.size());
-  for (const Instance& instance : instances) {
-    hulls.emplace_back(world.objects[instance.item].hull, worldFromObject(world, instance));
-  }
-  Distances distances(hulls);
+  Views views(world, instances);
   std::vector<std::pair<double, std::uint8_t>> in_cone;
   offsets_.reserve(lattice_.size() + 1);
   offsets_.push_back(0);
@@ -51,11 +78,11 @@ ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
     const Orientation orientation = lattice_.at(index);
     const Eigen::Isometry3d world_from_camera = world.rig.worldFromCamera(orientation);
     const Eigen::Vector3d axis = world_from_camera.linear().col(2);
-    distances.moveTo(world_from_camera.translation());
+    const std::vector<View>& seen = views.from(world_from_camera.translation());
     in_cone.clear();
-    for (std::size_t i = 0; i < hulls.size(); ++i) {
-      if (!hulls[i].meetsCone(world_from_camera.translation(), axis, kConeHalfAngleRad)) continue;
-      in_cone.emplace_back(distances.to(i), static_cast<std::uint8_t>(i));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!inCone(seen[i], axis)) continue;
+      in_cone.emplace_back(seen[i].distance, static_cast<std::uint8_t>(i));
       orientations_of_[i].push_back(orientation);
     }
     std::sort(in_cone.begin(), in_cone.end());

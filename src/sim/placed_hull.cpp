@@ -1,12 +1,10 @@
 #include "early_fusion/sim/placed_hull.h"
 
-#include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace early_fusion::sim {
 
@@ -16,20 +14,15 @@ namespace {
 /// one of its units is a centimetre here: a tenth of a millimetre and a micrometre.
 constexpr double kUnitsPerMetre = 100.0;
 
+/// How far a distance may lie above what its direction confirms: a hundredth of a millimetre [Bullet's unit], and a
+/// share of the distance; Bullet itself stops at a share of 0.0001.
+constexpr btScalar kAbsoluteTolerance = btScalar(1e-3);
+constexpr btScalar kRelativeTolerance = btScalar(3e-4);
+
 btVector3 toBullet(const Eigen::Vector3d& metres) {
   const Eigen::Vector3d units = metres * kUnitsPerMetre;
   return btVector3(static_cast<btScalar>(units.x()), static_cast<btScalar>(units.y()),
                    static_cast<btScalar>(units.z()));
-}
-
-/// In Bullet's unit; 0 where the shapes meet. Every shape has margin 0.
-double gap(const btConvexShape& a, const btTransform& world_from_a, const btConvexShape& b,
-           const btTransform& world_from_b) {
-  const btVector3 guess = world_from_a.getOrigin() - world_from_b.getOrigin();
-  btGjkEpaSolver2::sResults results;
-  // GJK fails only where the shapes just touch, which is meeting.
-  if (!btGjkEpaSolver2::Distance(&a, world_from_a, &b, world_from_b, guess, results)) return 0.0;
-  return static_cast<double>(results.distance);
 }
 
 btTransform translation(const btVector3& by) {
@@ -38,18 +31,52 @@ btTransform translation(const btVector3& by) {
   return transform;
 }
 
+/// How far apart the shapes are along a unit vector that points from `b` to `a`: a lower bound of their distance,
+/// negative where they overlap in that direction.
+btScalar gapAlong(const btVector3& along, const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin) {
+  return along.dot(a.localGetSupportVertexWithoutMarginNonVirtual(-along)) -
+         along.dot(b.localGetSupportVertexWithoutMarginNonVirtual(along) + b_origin);
+}
+
+/// The smallest distance [Bullet's unit] between `a`, in the origin, and `b`; 0 where they meet. Both have margin 0.
+///
+/// Now and then GJK stops early, on a flat simplex, and reports a distance that is too large, even for shapes that
+/// overlap. So a distance counts only when the gap along its direction confirms it; else GJK starts anew from
+/// elsewhere, and where no start helps, the widest gap that was found is the answer.
+/// @param nearest the point of `a` nearest to `b`, set where the distance is not 0.
+double distanceBetween(const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin, btVector3* nearest) {
+  constexpr int kTries = 12;
+  btVector3 guess = -b_origin;
+  btScalar widest = 0;
+  for (int i = 0; i < kTries; ++i) {
+    btGjkEpaSolver2::sResults results;
+    const bool apart =
+        btGjkEpaSolver2::Distance(&a, btTransform::getIdentity(), &b, translation(b_origin), guess, results);
+    if (!apart) return 0.0;  // they overlap, or just touch
+    const btVector3 along = results.witnesses[0] - results.witnesses[1];
+    const btScalar gap = along.fuzzyZero() ? 0 : gapAlong(along.normalized(), a, b, b_origin);
+    if (gap > widest) *nearest = results.witnesses[0];
+    widest = std::max(widest, gap);
+    const btScalar tolerance = kAbsoluteTolerance + kRelativeTolerance * results.distance;
+    if (results.distance - gap <= tolerance) return static_cast<double>(results.distance);
+    guess = guess.rotate(btVector3(i % 3 == 0, i % 3 == 1, i % 3 == 2), btScalar(0.7));
+  }
+  return static_cast<double>(widest);
+}
+
 }  // namespace
 
 PlacedHull::PlacedHull(const std::vector<Eigen::Vector3d>& corners, const Eigen::Isometry3d& world_from_object) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& corner : corners) mean += corner;
-  mean /= static_cast<double>(corners.size());
-  center_ = world_from_object * mean;
+  corners_.reserve(corners.size());
+  for (const Eigen::Vector3d& corner : corners) corners_.push_back(world_from_object * corner);
+  center_.setZero();
+  for (const Eigen::Vector3d& corner : corners_) center_ += corner;
+  center_ /= static_cast<double>(corners_.size());
   std::vector<btVector3> points;
-  points.reserve(corners.size());
-  for (const Eigen::Vector3d& corner : corners) {
-    radius_ = std::max(radius_, (corner - mean).norm());
-    points.push_back(toBullet(world_from_object.linear() * (corner - mean)));
+  points.reserve(corners_.size());
+  for (const Eigen::Vector3d& corner : corners_) {
+    radius_ = std::max(radius_, (corner - center_).norm());
+    points.push_back(toBullet(corner - center_));
   }
   shape_ = std::make_unique<btConvexHullShape>(&points[0].x(), static_cast<int>(points.size()),
                                                static_cast<int>(sizeof(btVector3)));
@@ -60,37 +87,17 @@ PlacedHull::~PlacedHull() = default;
 PlacedHull::PlacedHull(PlacedHull&&) noexcept = default;
 PlacedHull& PlacedHull::operator=(PlacedHull&&) noexcept = default;
 
-double PlacedHull::distanceTo(const Eigen::Vector3d& point) const {
-  const btSphereShape dot(0);
-  return gap(*shape_, btTransform::getIdentity(), dot, translation(toBullet(point - center_))) / kUnitsPerMetre;
-}
-
 double PlacedHull::distanceTo(const PlacedHull& other) const {
-  const btTransform other_place = translation(toBullet(other.center_ - center_));
-  return gap(*shape_, btTransform::getIdentity(), *other.shape_, other_place) / kUnitsPerMetre;
+  btVector3 nearest;
+  return distanceBetween(*shape_, *other.shape_, toBullet(other.center_ - center_), &nearest) / kUnitsPerMetre;
 }
 
-bool PlacedHull::meetsCone(const Eigen::Vector3d& apex, const Eigen::Vector3d& axis, double half_angle) const {
-  const Eigen::Vector3d to_center = center_ - apex;
-  const double distance = to_center.norm();
-  if (distance <= radius_) {
-    if (distanceTo(apex) == 0.0) return true;
-  } else {
-    // The ball about the hull is wholly outside, or the centre, which is in the hull, inside: no need for GJK.
-    const double off_axis = std::acos(std::clamp(to_center.dot(axis) / distance, -1.0, 1.0));
-    if (off_axis > half_angle + std::asin(radius_ / distance)) return false;
-    if (off_axis <= half_angle) return true;
-  }
-  const double height = distance + radius_;  // reaches past the hull
-  btConeShapeZ cone(static_cast<btScalar>(height * std::tan(half_angle) * kUnitsPerMetre),
-                    static_cast<btScalar>(height * kUnitsPerMetre));
-  cone.setMargin(0);
-  // Bullet's cone points up its z axis and has its origin half-way up.
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -axis);
-  const btTransform place(btQuaternion(static_cast<btScalar>(turn.x()), static_cast<btScalar>(turn.y()),
-                                       static_cast<btScalar>(turn.z()), static_cast<btScalar>(turn.w())),
-                          toBullet(apex + 0.5 * height * axis - center_));
-  return gap(*shape_, btTransform::getIdentity(), cone, place) == 0.0;
+double PlacedHull::distanceTo(const Eigen::Vector3d& point, Eigen::Vector3d* nearest) const {
+  const btSphereShape dot(0);
+  btVector3 on_hull(0, 0, 0);
+  const double distance = distanceBetween(*shape_, dot, toBullet(point - center_), &on_hull) / kUnitsPerMetre;
+  if (nearest != nullptr) *nearest = center_ + Eigen::Vector3d(on_hull.x(), on_hull.y(), on_hull.z()) / kUnitsPerMetre;
+  return distance;
 }
 
 }  // namespace early_fusion::sim

@@ -8,7 +8,8 @@ class btConvexHullShape;
 
 namespace early_fusion::sim {
 
-/// A convex hull somewhere in the world; distances by Bullet's GJK, good to about 0.01 mm. Immutable once made.
+/// A convex hull somewhere in the world. Distances are by Bullet's GJK, good to 0.02 mm or a thousandth, whichever is
+/// more. Immutable once made.
 class PlacedHull {
  public:
   /// @param corners in the object's frame [m]; at least one.
@@ -17,21 +18,22 @@ class PlacedHull {
   PlacedHull(PlacedHull&&) noexcept;
   PlacedHull& operator=(PlacedHull&&) noexcept;
 
+  /// In the world [m].
+  const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
   /// A point inside the hull, in the world [m]: the mean of its corners.
   const Eigen::Vector3d& center() const { return center_; }
   /// Of the ball about center() that holds the hull [m].
   double radius() const { return radius_; }
 
-  /// Smallest distance [m] from a point in the world; 0 inside.
-  double distanceTo(const Eigen::Vector3d& point) const;
-
   /// Smallest distance [m] between two hulls; 0 where they meet.
   double distanceTo(const PlacedHull& other) const;
 
-  /// Whether any point of the hull lies within `half_angle` [rad] of the ray from `apex` along the unit vector `axis`.
-  bool meetsCone(const Eigen::Vector3d& apex, const Eigen::Vector3d& axis, double half_angle) const;
+  /// Smallest distance [m] from a point in the world; 0 inside.
+  /// @param nearest where not null and the distance is not 0: the hull's point at that distance [m], in the world.
+  double distanceTo(const Eigen::Vector3d& point, Eigen::Vector3d* nearest = nullptr) const;
 
  private:
+  std::vector<Eigen::Vector3d> corners_;
   Eigen::Vector3d center_;
   double radius_ = 0;
   std::unique_ptr<btConvexHullShape> shape_;  // relative to center_, in Bullet's unit
