@@ -87,8 +87,8 @@ Model pottedMeatCan() {
 namespace {
 
 void drawMustardLabel(Panel panel) {
-  const Colour yellow{242, 184, 0}, red{186, 24, 20}, cream{252, 240, 190};
-  panel.verticalGradient({246, 192, 8}, {228, 164, 0});
+  const Colour yellow{236, 168, 0}, red{186, 24, 20}, cream{252, 240, 190};
+  panel.verticalGradient({240, 176, 4}, {222, 150, 0});
   for (const double middle : {0.25, 0.75}) {
     panel.ellipse(middle, 0.62, 0.16, 0.22, red);
     panel.ellipse(middle, 0.62, 0.145, 0.19, cream);
@@ -116,7 +116,7 @@ std::vector<Ring> mustardBody(int count) {
 
 Model mustardBottle() {
   const Colour cap{250, 214, 70}, tip{170, 30, 20};
-  Canvas canvas(kObjectTextureSize, {242, 184, 0});
+  Canvas canvas(kObjectTextureSize, {236, 168, 0});
   drawMustardLabel(canvas.panel(kLabel));
   canvas.panel(kRim).fill(cap);
   canvas.panel(kLid).fill(tip);

@@ -9,7 +9,7 @@
 namespace early_fusion::make_meshes {
 namespace {
 
-constexpr int kOversampling = 4;
+constexpr int kOversampling = 2;
 constexpr int kGrid = 256;         // units of Cell
 constexpr double kCellMargin = 2;  // [units of Cell]
 constexpr int kFractionBits = 4;   // of OpenCV's fixed-point coordinates

@@ -61,7 +61,7 @@ class Panel {
   cv::Mat pixels_;
 };
 
-/// A texture in the making, drawn at four times its size.
+/// A texture in the making, drawn at twice its size.
 class Canvas {
  public:
   /// @param size edge of the finished texture [px].

@@ -88,7 +88,7 @@ Model counterPart() {
 Model splashPart() {
   Mesh mesh;
   addBlock(mesh, {0.02, kCounterWidth, kSplashHeight}, tiled(kCounterWidth, kSplashHeight, 0.56),
-           Cell{64, 4, 8, 8}.uv(), Cell{64, 4, 8, 8}.uv());
+           Cell{88, 8, 16, 16}.uv(), Cell{88, 8, 16, 16}.uv());
   return finishPart("backsplash", mesh, splashTiles(), 0.15);
 }
 

@@ -83,13 +83,13 @@ Model bowl() {
 }
 
 Model plate() {
-  const Colour white{246, 244, 238}, navy{28, 44, 110}, shade{222, 218, 208};
+  const Colour white{226, 224, 216}, navy{28, 44, 110}, shade{204, 200, 190};
   const Cell face{0, 0, 176, 176}, underside{176, 0, 80, 80};
   Canvas canvas(kObjectTextureSize, shade);
   Panel top = canvas.panel(face);
   top.fill(white);
   // Rings from the rim inwards.
-  const std::pair<double, Colour> rings[] = {{0.49, navy}, {0.45, white}, {0.345, shade}, {0.335, white}};
+  const std::pair<double, Colour> rings[] = {{0.49, navy}, {0.42, white}, {0.34, shade}, {0.32, white}};
   for (const auto& [radius, colour] : rings) top.ellipse(0.5, 0.5, radius, radius, colour);
   const int segments = 36;
   Mesh mesh = revolve({{0, 0}, {0.045, 0}, {0.075, 0}, {0.084, 0.003}, {0.110, 0.014}, {0.129, 0.021}, {0.130, 0.0225}},

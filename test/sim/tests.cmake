@@ -1,0 +1,1 @@
+early_fusion_add_test(sim shipped_meshes_test early_fusion_make_meshes)
