@@ -1,0 +1,144 @@
+// The network against the same one in libtorch: same weights, same batch, same numbers.
+#include <gtest/gtest.h>
+
+#include "early_fusion/nn/adam.h"
+#include "policy_batches.h"
+#include "torch_early_fusion.h"
+
+namespace early_fusion::model {
+namespace {
+
+constexpr int kItems = 5;
+
+using Case = std::tuple<int, int, int>;  // channels, fusion block, image size
+
+class LibtorchParity : public testing::TestWithParam<Case> {
+ protected:
+  LibtorchParity() {
+    torch::manual_seed(1);
+    options.channels = std::get<0>(GetParam());
+    options.fusion_block = std::get<1>(GetParam());
+    options.image_size = std::get<2>(GetParam());
+    options.dropout = 0;
+    options.precision = "f32";
+    policy = makePolicy(options, testVocabulary(kItems), 3);
+    reference = std::make_shared<TorchEarlyFusion>(options, kItems);
+    makeUnusual();
+    copyWeights();
+  }
+
+  /// Norms that do something, or a lost scale or shift would not show.
+  void makeUnusual() {
+    nn::Parameters& parameters = policy->parameters();
+    core::Random random(9);
+    for (const nn::TensorSlice& slice : parameters.parameterSlices()) {
+      if (slice.name.find("norm") == std::string::npos) continue;
+      for (std::size_t i = 0; i < slice.size; ++i) {
+        parameters.values()[slice.offset + i] += static_cast<float>(random.uniform(-0.4, 0.4));
+      }
+    }
+    for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
+      for (std::size_t i = 0; i < slice.size; ++i) {
+        parameters.buffers()[slice.offset + i] = static_cast<float>(random.uniform(0.05, 0.5));
+      }
+    }
+    policy->parametersChanged();
+  }
+
+  void copyWeights() {
+    torch::NoGradGuard guard;
+    nn::Parameters& parameters = policy->parameters();
+    const auto named = reference->named_parameters();
+    ASSERT_EQ(named.size(), parameters.parameterSlices().size());
+    for (const nn::TensorSlice& slice : parameters.parameterSlices()) {
+      ASSERT_EQ(named[slice.name].sizes().vec(), slice.shape) << slice.name;
+      named[slice.name].copy_(torch::from_blob(parameters.values().data() + slice.offset, slice.shape));
+    }
+    const auto buffers = reference->named_buffers();
+    for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
+      buffers[slice.name].copy_(torch::from_blob(parameters.buffers().data() + slice.offset, slice.shape));
+    }
+  }
+
+  /// Within `tolerance` of the tensor's largest number.
+  static void expectNear(const Eigen::VectorXf& values, const nn::TensorSlice& slice, const torch::Tensor& expected,
+                         double tolerance) {
+    const torch::Tensor flat = expected.contiguous().flatten();
+    const double largest = flat.abs().max().item<double>();
+    double worst = 0;
+    for (std::size_t i = 0; i < slice.size; ++i) {
+      worst = std::max(worst, std::abs(double(values[slice.offset + i]) - flat.data_ptr<float>()[i]));
+    }
+    EXPECT_LE(worst, tolerance * largest + 1e-7) << slice.name << ", whose largest number is " << largest;
+  }
+
+  PolicyOptions options;
+  std::unique_ptr<GoalPolicy> policy;
+  std::shared_ptr<TorchEarlyFusion> reference;
+};
+
+TEST_P(LibtorchParity, PredictsTheSameProbabilities) {
+  const TestBatch batch(5, options.image_size, kItems, 2);
+  Probabilities probabilities;
+  policy->predict(batch.observations(), probabilities);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  reference->eval();
+  torch::NoGradGuard guard;
+  const torch::Tensor expected = torch::softmax(reference->forward(torch_batch.images, torch_batch.counts), 1);
+  for (int i = 0; i < 5; ++i) {
+    for (int k = 0; k < core::kActionCount; ++k) {
+      EXPECT_NEAR(probabilities(i, k), expected[i][k].item<float>(), 1e-5) << "row " << i << ", action " << k;
+    }
+  }
+}
+
+TEST_P(LibtorchParity, HasTheSameLossGradientsAndRunningStatistics) {
+  const TestBatch batch(5, options.image_size, kItems, 2);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  reference->train();
+  torch::Tensor expected = torch_batch.loss(reference->forward(torch_batch.images, torch_batch.counts));
+  expected.backward();
+
+  EXPECT_NEAR(policy->lossAndGradients(batch.samples, 0), expected.item<double>(), 2e-6);
+  const auto gradients = reference->named_parameters();
+  for (const nn::TensorSlice& slice : policy->parameters().parameterSlices()) {
+    expectNear(policy->parameters().gradients(), slice, gradients[slice.name].grad(), 2e-4);
+  }
+  const auto buffers = reference->named_buffers();
+  for (const nn::TensorSlice& slice : policy->parameters().bufferSlices()) {
+    expectNear(policy->parameters().buffers(), slice, buffers[slice.name], 1e-5);
+  }
+}
+
+TEST_P(LibtorchParity, LearnsAlongTheSameLosses) {
+  // Adam divides a gradient by its own size, rounding errors too: an epsilon above them keeps the two runs together.
+  constexpr double kRate = 1e-3, kEpsilon = 1e-3;
+  const TestBatch batch(8, options.image_size, kItems, 4);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  nn::AdamOptions adam_options;
+  adam_options.epsilon = kEpsilon;
+  nn::Adam adam(policy->parameters().values().size(), adam_options);
+  torch::optim::Adam torch_adam(reference->parameters(), torch::optim::AdamOptions(kRate).eps(kEpsilon));
+  reference->train();
+  std::vector<double> losses;
+  for (int step = 0; step < 10; ++step) {
+    torch_adam.zero_grad();
+    torch::Tensor expected = torch_batch.loss(reference->forward(torch_batch.images, torch_batch.counts));
+    expected.backward();
+    torch_adam.step();
+    const double loss = policy->lossAndGradients(batch.samples, 0);
+    adam.step(policy->parameters().values(), policy->parameters().gradients(), kRate);
+    policy->parametersChanged();
+    losses.push_back(loss);
+    // Rounding errors grow from step to step.
+    EXPECT_NEAR(loss, expected.item<double>(), 2e-6 + 2e-5 * step) << "step " << step;
+  }
+  EXPECT_LT(losses.back(), losses.front() - 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Networks, LibtorchParity,
+                         testing::Values(Case{16, 0, 32}, Case{16, 1, 32}, Case{16, 2, 32}, Case{16, 3, 32},
+                                         Case{32, 1, 48}, Case{48, 2, 16}));
+
+}  // namespace
+}  // namespace early_fusion::model

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/model/goal_policy.h"
+
+namespace early_fusion::model {
+
+inline core::Vocabulary testVocabulary(int items) {
+  std::vector<std::string> names;
+  for (int i = 0; i < items; ++i) names.push_back("item_" + std::to_string(i));
+  return core::Vocabulary(names);
+}
+
+/// Samples with the frames and requests that they point to: smooth noise, some black frames, requests of zero to three
+/// items of which one may stand twice, soft targets and unequal weights.
+struct TestBatch {
+  TestBatch(int count, int image_size, int items, std::uint64_t seed) : frames(count + 2), requests(count) {
+    core::Random random(seed, {77});
+    for (std::vector<std::uint8_t>& frame : frames) {
+      frame.resize(3u * image_size * image_size);
+      const int base = random.below(156);
+      for (std::uint8_t& byte : frame) byte = static_cast<std::uint8_t>(base + random.below(100));
+    }
+    for (int i = 0; i < count; ++i) {
+      for (int k = random.below(4); k > 0; --k) requests[i].push_back(random.below(items));
+      if (i % 3 == 1 && !requests[i].empty()) requests[i].push_back(requests[i][0]);
+      Sample sample;
+      for (int k = 0; k < kHistory; ++k) sample.observation.frames[k] = frames[i + k].data();
+      if (i % 4 == 3) sample.observation.frames[2] = nullptr;
+      if (i % 4 == 2) sample.observation.frames[1] = sample.observation.frames[2] = nullptr;
+      sample.observation.request = &requests[i];
+      sample.weight = static_cast<float>(0.5 + random.uniform());
+      const int first = random.below(core::kActionCount), second = random.below(core::kActionCount);
+      sample.target[first] += 0.75f;
+      sample.target[second] += 0.25f;
+      samples.push_back(sample);
+    }
+  }
+
+  std::vector<Observation> observations() const {
+    std::vector<Observation> all;
+    for (const Sample& sample : samples) all.push_back(sample.observation);
+    return all;
+  }
+
+  std::vector<std::vector<std::uint8_t>> frames;
+  std::vector<core::Request> requests;
+  std::vector<Sample> samples;
+};
+
+}  // namespace early_fusion::model

@@ -1,0 +1,83 @@
+#pragma once
+
+// glog, which torch includes, and gtest are both in the tests.
+#include <torch/torch.h>
+
+#include <string>
+#include <vector>
+
+#include "early_fusion/model/goal_policy.h"
+
+namespace early_fusion::model {
+
+/// The network of EarlyFusion, written with libtorch's own modules: the second implementation.
+struct TorchEarlyFusion : torch::nn::Module {
+  TorchEarlyFusion(const PolicyOptions& options, int items) : options_(options) {
+    const int c = options.channels;
+    for (int b = 0; b < 4; ++b) {
+      const int image_channels = b == 0 ? 9 : c;
+      const int in = image_channels + (b == options.fusion_block ? c : 0);
+      auto block = std::make_shared<torch::nn::Module>("block");
+      convolutions_.push_back(
+          block->register_module("conv", torch::nn::Conv2d(torch::nn::Conv2dOptions(in, c, 3).padding(1))));
+      norms_.push_back(block->register_module("norm", torch::nn::BatchNorm2d(c)));
+      register_module("block" + std::to_string(b + 1), block);
+    }
+    const int edge = options.image_size / 16;
+    embedding_ = register_module("embedding", torch::nn::Linear(items, c));
+    hidden_ = register_module("hidden", torch::nn::Linear(c * edge * edge, c));
+    output_ = register_module("output", torch::nn::Linear(c, core::kActionCount));
+  }
+
+  /// images (N,9,S,S) in [0, 1], counts (N,items) -> logits (N,7).
+  torch::Tensor forward(const torch::Tensor& images, const torch::Tensor& counts) {
+    const torch::Tensor goal = embedding_->forward(counts);
+    torch::Tensor x = images;
+    for (int b = 0; b < 4; ++b) {
+      if (b == options_.fusion_block) {
+        const torch::Tensor tiled = goal.unsqueeze(2).unsqueeze(3).expand({x.size(0), goal.size(1), x.size(2), x.size(3)});
+        x = torch::cat({x, tiled}, 1);
+      }
+      x = norms_[b]->forward(torch::relu(torch::max_pool2d(convolutions_[b]->forward(x), 2)));
+    }
+    x = torch::relu(hidden_->forward(x.flatten(1)));
+    return output_->forward(torch::dropout(x, options_.dropout, is_training()));
+  }
+
+  PolicyOptions options_;
+  std::vector<torch::nn::Conv2d> convolutions_;
+  std::vector<torch::nn::BatchNorm2d> norms_;
+  torch::nn::Linear embedding_{nullptr}, hidden_{nullptr}, output_{nullptr};
+};
+
+/// Samples as libtorch takes them.
+struct TorchBatch {
+  TorchBatch(const std::vector<Sample>& samples, int image_size, int items) {
+    const std::int64_t n = static_cast<std::int64_t>(samples.size());
+    images = torch::zeros({n, 9, image_size, image_size});
+    counts = torch::zeros({n, items});
+    targets = torch::zeros({n, core::kActionCount});
+    weights = torch::zeros({n});
+    for (std::int64_t i = 0; i < n; ++i) {
+      for (int f = 0; f < kHistory; ++f) {
+        const std::uint8_t* bytes = samples[i].observation.frames[f];
+        if (bytes == nullptr) continue;
+        const torch::Tensor frame =
+            torch::from_blob(const_cast<std::uint8_t*>(bytes), {image_size, image_size, 3}, torch::kUInt8);
+        images[i].slice(0, 3 * f, 3 * f + 3).copy_(frame.permute({2, 0, 1}).to(torch::kFloat) / 255.0);
+      }
+      for (int item : *samples[i].observation.request) counts[i][item] += 1;
+      for (int k = 0; k < core::kActionCount; ++k) targets[i][k] = samples[i].target[k];
+      weights[i] = samples[i].weight;
+    }
+  }
+
+  torch::Tensor loss(const torch::Tensor& logits) const {
+    const torch::Tensor entropies = -(targets * torch::log_softmax(logits, 1)).sum(1);
+    return (weights * entropies).sum() / weights.sum();
+  }
+
+  torch::Tensor images, counts, targets, weights;
+};
+
+}  // namespace early_fusion::model
