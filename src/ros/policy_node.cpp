@@ -25,8 +25,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
   set.addChoice("mode", acting.mode, {"argmax", "sample"}, "with weights from a file: the likeliest action, or drawn");
   set.add("seed", acting.seed, "of the draws in mode 'sample'");
-  set.addChoice("precision", precision, {"stored", "auto", "f32", "bf16"},
-                "of the arithmetic with weights from a file; stored: as they were saved");
+  set.addChoice("precision", acting.precision, {"auto", "f32", "bf16"},
+                "of the arithmetic with weights from a file; auto: bf16 where the processor has it natively");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");
@@ -42,7 +42,6 @@ PolicyNode::PolicyNode(const Options& options)
       action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
       status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)),
       synchronizer_(SameStamp(kImageQueue)) {
-  if (options_.precision != "stored") options_.acting.precision = options_.precision;
   if (!options_.weights.empty()) loadFile(options_.weights);
   publishStatus();
   load_server_ = node_.advertiseService(kLoadWeightsService, &PolicyNode::onLoadWeights, this);

@@ -26,8 +26,7 @@ class PolicyNode {
  public:
   struct Options {
     std::string weights;  ///< a weights file; empty: wait for the topic or the service
-    Acting acting;        ///< with weights from a file, but for the precision
-    std::string precision = "stored";
+    Acting acting;        ///< with weights from a file
     std::string image_transport = "raw";
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
