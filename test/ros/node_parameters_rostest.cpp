@@ -1,0 +1,64 @@
+// Nodes that are started wrongly: they must end with exit code 1 and say which parameter is wrong.
+#include <gtest/gtest.h>
+
+#include "child_process.h"
+#include "small_session.h"
+
+namespace early_fusion::nodes {
+namespace {
+
+struct Case {
+  std::string node;
+  std::vector<std::string> arguments;
+  std::vector<std::string> words;  ///< that the message must hold
+};
+
+std::ostream& operator<<(std::ostream& stream, const Case& c) { return stream << c.node << " " << c.arguments[0]; }
+
+class NodeParameters : public testing::TestWithParam<Case> {};
+
+TEST_P(NodeParameters, AMistakeIsNamedAndTheNodeEnds) {
+  const SmallSession files;
+  std::vector<std::string> command = {std::string(EARLY_FUSION_NODES) + "/" + GetParam().node};
+  for (const std::string& argument : GetParam().arguments) command.push_back(argument);
+  // A node of a name of its own: the master keeps parameters.
+  static int count = 0;
+  command.push_back("__name:=" + GetParam().node + std::to_string(++count));
+  ChildProcess node(command, {}, files.path("log"));
+  ASSERT_TRUE(node.ends(20)) << node.output();
+  EXPECT_EQ(node.exitCode(), 1) << node.output();
+  for (const std::string& word : GetParam().words) {
+    EXPECT_NE(node.output().find(word), std::string::npos) << "expected '" << word << "' in:\n" << node.output();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nodes, NodeParameters,
+    testing::Values(Case{"simulator_node", {"_rate:=-3"}, {"rate", "-3", "[0, 10000] Hz"}},
+                    Case{"simulator_node", {"_free_run:=perhaps"}, {"free_run", "perhaps", "true | false"}},
+                    Case{"simulator_node", {"_tusk:=hard"}, {"tusk", "unknown", "task"}},
+                    Case{"simulator_node", {"_task:=impossible"}, {"impossible", "hard, medium, simple"}},
+                    Case{"simulator_node", {"_world:=/nowhere.yaml"}, {"/nowhere.yaml"}},
+                    Case{"policy_node", {"_weights:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
+                    Case{"policy_node", {"_mode:=guess"}, {"mode", "guess", "argmax | sample"}},
+                    Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
+                    Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
+                    Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
+                    Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
+                    Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
+                    Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
+                    Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
+                    Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
+
+TEST(NodeHelp, ListsEveryParameterWithRangeAndDefault) {
+  const SmallSession files;
+  for (const char* name : {"simulator", "policy", "trainer", "evaluator", "request", "pan_tilt_driver"}) {
+    ChildProcess node({std::string(EARLY_FUSION_NODES) + "/" + name + "_node", "--help"}, {}, files.path("log"));
+    ASSERT_TRUE(node.ends(20));
+    EXPECT_EQ(node.exitCode(), 0);
+    EXPECT_NE(node.output().find("_diagnostic_period:=1  in [0.1, 3600] s"), std::string::npos) << node.output();
+  }
+}
+
+}  // namespace
+}  // namespace early_fusion::nodes

@@ -1,0 +1,204 @@
+#include "early_fusion/ros/rollout_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/learning/agent.h"
+#include "early_fusion/learning/rollout.h"
+#include "early_fusion/ros/conversions.h"
+#include "early_fusion/sim/rasterizer.h"
+#include "small_session.h"
+
+namespace early_fusion::nodes {
+namespace {
+
+/// The four messages of one step.
+struct Messages {
+  sensor_msgs::ImagePtr image;
+  Request request;
+  Scene scene;
+  Action action;
+};
+
+class RolloutRecorderTest : public testing::Test {
+ protected:
+  static constexpr std::uint64_t kSeed = 4;
+
+  RolloutRecorderTest() {
+    plan_.task = files_.task();
+    plan_.seed = kSeed;
+    plan_.first_episode = 10;
+    plan_.episodes = 3;
+    plan_.weights = "w";
+    plan_.mode = "sample";
+    recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
+  }
+
+  /// What a simulator and a policy say of an episode that the expert plays; COLLECT first where `blunder` is set.
+  std::vector<Messages> play(std::uint64_t number, bool blunder = false) {
+    sim::Episode episode(*world_, task_, sim::sampleEpisode(*world_, task_, kSeed, number));
+    std::vector<Messages> steps;
+    std::string previous;
+    while (!episode.finished()) {
+      const core::Action action = blunder && steps.empty() ? core::Action::kTiltUp : expert::decide(episode).action;
+      steps.push_back(step(episode, number, previous, action));
+      previous = core::actionName(action);
+      episode.step(action);
+    }
+    return steps;
+  }
+
+  Messages step(const sim::Episode& episode, std::uint64_t number, const std::string& previous, core::Action action) {
+    const EpisodeKey key{task_.name, kSeed, number};
+    const core::Vocabulary& vocabulary = world_->objects.vocabulary();
+    std_msgs::Header header;
+    header.stamp = ::ros::Time(100, stamp_++);
+    core::Image image;
+    rasterizer_.setScene(episode.setup().instances, episode.state().present);
+    rasterizer_.render(world_->rig.worldFromCamera(episode.state().orientation), image);
+    Messages messages{imageMessage(image, header), requestMessage(episode, key, vocabulary, header),
+                      sceneMessage(episode, key, task_.steps, vocabulary, previous, header), Action()};
+    messages.action.header = header;
+    messages.action.episode = number;
+    messages.action.step = episode.state().step;
+    messages.action.name = core::actionName(action);
+    messages.action.weights = "w";
+    messages.action.mode = "sample";
+    messages.action.frames = std::min(3, episode.state().step + 1);
+    return messages;
+  }
+
+  const learning::TrajectoryStep* add(const Messages& messages) {
+    return recorder_->add(*messages.image, messages.request, messages.scene, messages.action);
+  }
+  void addAll(const std::vector<Messages>& steps) {
+    for (const Messages& messages : steps) add(messages);
+  }
+
+  /// @return what the recorder has against these messages.
+  std::string complaint(const Messages& messages) {
+    try {
+      add(messages);
+    } catch (const core::Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const SmallSession files_;
+  const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
+  const sim::Task task_ = sim::loadTask(files_.task());
+  sim::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
+  RolloutPlan plan_;
+  std::unique_ptr<RolloutRecorder> recorder_;
+  std::uint32_t stamp_ = 1;
+};
+
+TEST_F(RolloutRecorderTest, RecordsWhatARolloutInOneProcessDoes) {
+  for (std::uint64_t number : {10, 11, 12}) addAll(play(number));
+  std::vector<learning::Trajectory> wanted;
+  learning::RolloutRunner runner(*world_, task_, kSeed);
+  runner.run(10, 3, *learning::makeExpertAgent(), true,
+             [&](learning::Trajectory trajectory) { wanted.push_back(std::move(trajectory)); });
+  for (const learning::Trajectory& trajectory : wanted) {
+    const std::optional<learning::Trajectory> recorded = recorder_->next();
+    ASSERT_TRUE(recorded);
+    EXPECT_EQ(recorded->episode, trajectory.episode);
+    EXPECT_EQ(recorded->score.f1, trajectory.score.f1);
+    ASSERT_EQ(recorded->steps.size(), trajectory.steps.size());
+    for (std::size_t i = 0; i < trajectory.steps.size(); ++i) {
+      EXPECT_EQ(recorded->steps[i].frame, trajectory.steps[i].frame);
+      EXPECT_EQ(recorded->steps[i].action, trajectory.steps[i].action);
+      EXPECT_EQ(recorded->steps[i].label.action, trajectory.steps[i].label.action);
+      EXPECT_EQ(recorded->steps[i].label.optimal, trajectory.steps[i].label.optimal);
+      EXPECT_EQ(recorded->steps[i].label.request, trajectory.steps[i].label.request);
+      EXPECT_EQ(recorded->steps[i].relabel.request, trajectory.steps[i].relabel.request);
+      EXPECT_EQ(recorded->steps[i].relabel.action, trajectory.steps[i].relabel.action);
+    }
+  }
+  EXPECT_TRUE(recorder_->complete());
+  EXPECT_FALSE(recorder_->next());
+}
+
+TEST_F(RolloutRecorderTest, HandsTrajectoriesOutInOrderWhateverOrderTheyCameIn) {
+  addAll(play(11));
+  EXPECT_FALSE(recorder_->next());
+  EXPECT_EQ(recorder_->missing(), std::make_pair(std::uint64_t{10}, std::uint64_t{11}));
+  addAll(play(10));
+  EXPECT_EQ(recorder_->next()->episode, 10u);
+  EXPECT_EQ(recorder_->next()->episode, 11u);
+  EXPECT_EQ(recorder_->missing(), std::make_pair(std::uint64_t{12}, std::uint64_t{13}));
+}
+
+TEST_F(RolloutRecorderTest, IgnoresWhatIsNotOfThePlan) {
+  std::vector<Messages> other = play(13);
+  EXPECT_EQ(add(other[0]), nullptr);
+  std::vector<Messages> foreign = play(10);
+  foreign[0].scene.seed = 99;
+  EXPECT_EQ(add(foreign[0]), nullptr);
+  foreign[1].scene.task = "other";
+  EXPECT_EQ(add(foreign[1]), nullptr);
+}
+
+TEST_F(RolloutRecorderTest, IgnoresAStepThatIsPublishedAgain) {
+  const std::vector<Messages> steps = play(10);
+  for (const Messages& messages : steps) {
+    EXPECT_NE(add(messages), nullptr);
+    EXPECT_EQ(add(messages), nullptr);
+  }
+  EXPECT_EQ(recorder_->next()->steps.size(), steps.size());
+}
+
+TEST_F(RolloutRecorderTest, DropsAnEpisodeWithAMissingStep) {
+  const std::vector<Messages> steps = play(10);
+  add(steps[0]);
+  add(steps[1]);
+  EXPECT_NE(complaint(steps[3]).find("does not follow"), std::string::npos);
+  for (std::size_t i = 4; i < steps.size(); ++i) EXPECT_EQ(add(steps[i]), nullptr);
+  EXPECT_FALSE(recorder_->next());
+  addAll(play(10));
+  EXPECT_TRUE(recorder_->next());
+}
+
+TEST_F(RolloutRecorderTest, DropsAnEpisodeOfAPolicyThatHasNotSeenItsBeginning) {
+  std::vector<Messages> steps = play(10);
+  add(steps[0]);
+  add(steps[1]);
+  steps[2].action.frames = 1;
+  EXPECT_NE(complaint(steps[2]).find("from its beginning"), std::string::npos);
+  EXPECT_EQ(add(steps[3]), nullptr);
+}
+
+TEST_F(RolloutRecorderTest, DropsAnEpisodeOfOtherWeightsOrAnotherMode) {
+  std::vector<Messages> steps = play(10);
+  steps[0].action.weights = "old";
+  EXPECT_NE(complaint(steps[0]).find("'old'"), std::string::npos);
+  steps = play(10);
+  steps[0].action.mode = "argmax";
+  EXPECT_NE(complaint(steps[0]).find("argmax"), std::string::npos);
+}
+
+TEST_F(RolloutRecorderTest, DropsAnEpisodeWhoseStateDoesNotFollowFromItsActions) {
+  const std::vector<Messages> one = play(10), other = play(10, true);
+  ASSERT_NE(one[0].action.name, other[0].action.name);
+  add(one[0]);
+  // The simulator took another action than the one that was seen: two policies, or one that was replaced.
+  EXPECT_NE(complaint(other[1]).find("does not follow"), std::string::npos);
+}
+
+TEST_F(RolloutRecorderTest, ANewBeginningReplacesAnEpisodeThatWasCutOff) {
+  const std::vector<Messages> cut = play(10), whole = play(10);
+  add(cut[0]);
+  add(cut[1]);
+  addAll(whole);
+  EXPECT_EQ(recorder_->next()->steps.size(), whole.size());
+}
+
+TEST_F(RolloutRecorderTest, RefusesAnImageOfAnotherSize) {
+  std::vector<Messages> steps = play(10);
+  steps[0].image->width = 16;
+  EXPECT_NE(complaint(steps[0]).find("16 x 32"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace early_fusion::nodes

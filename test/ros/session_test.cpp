@@ -1,0 +1,213 @@
+// Whole sessions through roslaunch: that they end by themselves, learn what the command line learns, bit for bit, and
+// survive the death of any node.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "child_process.h"
+#include "early_fusion/core/file.h"
+#include "early_fusion/learning/training_session.h"
+#include "small_session.h"
+
+namespace early_fusion::nodes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSessionSec = 90;  // far more than a session takes: a limit for one that hangs
+
+int freePort() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+  socklen_t size = sizeof(address);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  ::close(socket);
+  return ntohs(address.sin_port);
+}
+
+bool waitFor(const std::function<bool()>& condition, double timeout_sec = 30) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_sec);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+/// A master of its own, and the same small session trained in this process to compare with.
+class SessionTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    files_ = new SmallSession();
+    const learning::SessionOptions options = learning::resolveSessionOptions(given("reference"), "test");
+    learning::TrainingSession session(options, sim::loadWorld(options.world));
+    learning::runSession(session, [](const learning::Progress&) {});
+  }
+  static void TearDownTestSuite() { delete files_; }
+
+  static std::vector<std::pair<std::string, std::string>> given(const std::string& output) {
+    return {{"task", files_->task()},
+            {"world", files_->world()},
+            {"preset", files_->preset()},
+            {"output", files_->path(output)},
+            {"evaluation_episodes", std::to_string(SmallSession::kEvaluationEpisodes)}};
+  }
+
+  SessionTest() {
+    const std::string port = std::to_string(freePort());
+    environment_ = {{"ROS_MASTER_URI", "http://127.0.0.1:" + port},
+                    {"ROS_IP", "127.0.0.1"},
+                    {"ROS_HOME", files_->path("ros_home")},
+                    {"ROS_LOG_DIR", files_->path("ros_home/log")},
+                    {"EARLY_FUSION_SHARE", core::shareFolder()}};
+    master_.emplace(std::vector<std::string>{"roscore", "-p", port}, environment_, files_->path("roscore.log"));
+    waitFor([&] { return master_->output().find("started core service [/rosout]") != std::string::npos; });
+  }
+
+  std::unique_ptr<ChildProcess> launch(const std::string& file, const std::vector<std::string>& arguments) {
+    std::vector<std::string> command = {"roslaunch", "early_fusion", file};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const std::string log = files_->path(file + std::to_string(launches_++) + ".log");
+    return std::make_unique<ChildProcess>(command, environment_, log);
+  }
+
+  std::unique_ptr<ChildProcess> launchTraining(const std::string& output, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments;
+    for (const auto& [name, value] : given(output)) arguments.push_back(name + ":=" + value);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return launch("train.launch", arguments);
+  }
+
+  static std::string weights(const std::string& output) {
+    return core::readFile(files_->path(output + "/weights.safetensors"));
+  }
+  static nlohmann::json result(const std::string& output) {
+    return nlohmann::json::parse(core::readFile(files_->path(output + "/result.json")));
+  }
+  static bool exists(const std::string& name) { return fs::exists(files_->path(name)); }
+
+  /// The process of a node that this test's launches have started.
+  static std::optional<int> processOf(const std::string& node) {
+    const std::vector<int> found = processesWith({node + "_node", "__log:=" + files_->path("ros_home/log")});
+    return found.empty() ? std::nullopt : std::optional<int>(found.front());
+  }
+
+  static SmallSession* files_;
+  ChildProcess::Environment environment_;
+  std::optional<ChildProcess> master_;
+  int launches_ = 0;
+};
+
+SmallSession* SessionTest::files_ = nullptr;
+
+TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
+  const auto session = launchTraining("run");
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("run/result.json")) << session->output();
+  EXPECT_TRUE(weights("run") == weights("reference")) << session->output();
+  const nlohmann::json one = result("run"), other = result("reference");
+  EXPECT_EQ(one["per_episode"], other["per_episode"]);
+  EXPECT_EQ(one["weights_id"], other["weights_id"]);
+  // A line for each round, with what a person wants to know.
+  const std::string total = std::to_string(SmallSession::kTrajectories);
+  EXPECT_NE(session->output().find("2/" + total), std::string::npos) << session->output();
+  EXPECT_NE(session->output().find(total + "/" + total + " (100%)"), std::string::npos) << session->output();
+}
+
+TEST_F(SessionTest, KilledNodesComeBackAndTheWeightsAreTheSame) {
+  const auto session = launchTraining("killed", {"rate:=12", "respawn_delay:=0", "stall_timeout:=2"});
+  // Each in the middle of a rollout, some time after everything has begun.
+  ASSERT_TRUE(waitFor([] { return exists("killed/checkpoint.safetensors"); })) << session->output();
+  for (const std::string node : {"policy", "simulator", "trainer"}) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const std::optional<int> victim = processOf(node);
+    ASSERT_TRUE(victim) << session->output();
+    ASSERT_FALSE(exists("killed/result.json")) << "too fast to be killed in between";
+    ::kill(*victim, SIGKILL);
+    ASSERT_TRUE(waitFor([&] {
+      const std::optional<int> successor = processOf(node);
+      return successor && *successor != *victim;
+    })) << session->output();
+  }
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("killed/result.json")) << session->output();
+  EXPECT_TRUE(weights("killed") == weights("reference")) << session->output();
+  EXPECT_EQ(result("killed")["per_episode"], result("reference")["per_episode"]);
+}
+
+TEST_F(SessionTest, TwoSessionsSideBySideInTheirNamespaces) {
+  const auto left = launchTraining("left", {"__ns:=left", "private_tf:=true"});
+  const auto right = launchTraining("right", {"__ns:=right", "private_tf:=true", "seed:=2"});
+  ASSERT_TRUE(left->ends(kSessionSec)) << left->output();
+  ASSERT_TRUE(right->ends(kSessionSec)) << right->output();
+  ASSERT_TRUE(exists("left/result.json")) << left->output();
+  ASSERT_TRUE(exists("right/result.json")) << right->output();
+  EXPECT_TRUE(weights("left") == weights("reference"));
+  EXPECT_FALSE(weights("right") == weights("reference"));
+}
+
+TEST_F(SessionTest, ASessionThatCannotRunEndsWithTheReason) {
+  const auto session = launchTraining("never", {"seed:=lucky"});
+  ASSERT_TRUE(session->ends(30)) << session->output();
+  EXPECT_NE(session->output().find("the session cannot go on"), std::string::npos) << session->output();
+  EXPECT_NE(session->output().find("'lucky'"), std::string::npos) << session->output();
+}
+
+TEST_F(SessionTest, ARunFolderIsNotOverwrittenUnlessResumed) {
+  const std::string before = weights("reference");
+  const auto refused = launchTraining("reference");
+  ASSERT_TRUE(refused->ends(30)) << refused->output();
+  EXPECT_NE(refused->output().find("holds a training session already"), std::string::npos) << refused->output();
+  const auto resumed = launchTraining("reference", {"resume:=true"});
+  ASSERT_TRUE(resumed->ends(kSessionSec)) << resumed->output();
+  EXPECT_TRUE(weights("reference") == before);
+}
+
+TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
+  const std::string path = files_->path("reference/weights.safetensors");
+  const auto launched = launch(
+      "evaluate.launch", {"weights:=" + path, "task:=" + files_->task(), "episodes:=5", "world:=" + files_->world(),
+                          "precision:=f32", "result:=" + files_->path("scores.json")});
+  ASSERT_TRUE(launched->ends(kSessionSec)) << launched->output();
+  ASSERT_TRUE(exists("scores.json")) << launched->output();
+  EXPECT_NE(launched->output().find("agreement"), std::string::npos);
+
+  const auto world = sim::loadWorld(files_->world());
+  const auto policy = model::loadPolicy(nn::WeightsFile::read(path), path, "f32");
+  const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kArgmax, learning::kHeldOutSeed);
+  learning::RolloutRunner runner(*world, sim::loadTask(files_->task()), learning::kHeldOutSeed);
+  const auto expected = nlohmann::json::parse(learning::evaluate(runner, *agent, 5, path).toJson());
+  const auto scores = nlohmann::json::parse(core::readFile(files_->path("scores.json")));
+  EXPECT_EQ(scores["per_episode"], expected["per_episode"]);
+  EXPECT_EQ(scores["f1"], expected["f1"]);
+}
+
+TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
+  const auto demo = launch("demo.launch", {"weights:=" + files_->path("reference/weights.safetensors"),
+                                           "task:=" + files_->task(), "world:=" + files_->world(), "rate:=20"});
+  const auto record = launch("record.launch", {"bag:=" + files_->path("demo.bag"), "duration:=4"});
+  ASSERT_TRUE(record->ends(kSessionSec)) << record->output();
+  ChildProcess info({"rosbag", "info", files_->path("demo.bag")}, environment_, files_->path("info.log"));
+  ASSERT_TRUE(info.ends(20));
+  for (const char* topic :
+       {"/camera/image_raw ", "/camera/camera_info ", "/camera/image_annotated ", "/request ", "/scene ", "/action ",
+        "/episode ", "/joint_states ", "/markers ", "/tf ", "/tf_static ", "/policy_status "}) {
+    EXPECT_NE(info.output().find(topic), std::string::npos) << topic << "is not in\n" << info.output();
+  }
+  const auto view = launch("view.launch", {"bag:=" + files_->path("demo.bag"), "rviz:=false", "speed:=4"});
+  ASSERT_TRUE(view->ends(30)) << view->output();
+  EXPECT_NE(view->output().find("[play-2] has died!\nprocess has finished cleanly"), std::string::npos)
+      << view->output();
+}
+
+}  // namespace
+}  // namespace early_fusion::nodes
