@@ -130,11 +130,13 @@ std::string TrainingSession::weightsId() const {
 }
 
 nn::WeightsFile TrainingSession::weights() const {
+  const std::string fov_deg = std::to_string(world_->options.horizontal_fov_deg);
   return model::savePolicy(trainer_->policy(), {{"id", weightsId()},
                                                 {"task", task_.name},
                                                 {"preset", options_.preset},
                                                 {"seed", std::to_string(options_.seed)},
                                                 {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
+                                                {"horizontal_fov_deg", fov_deg},
                                                 {"options", learningOptions(options_)}});
 }
 
