@@ -11,9 +11,7 @@ target_link_libraries(early_fusion_child_process early_fusion_settings)
 
 # A node with a test in the place of its partners: ros/<name>.test and ros/<name>_rostest.cpp.
 function(early_fusion_add_rostest name)
-  add_rostest_gtest(${name}_rostest ros/${name}.test ros/${name}_rostest.cpp
-    DEPENDENCIES evaluator_node pan_tilt_driver_node policy_node request_node session_monitor_node simulator_node
-      trainer_node)
+  add_rostest_gtest(${name}_rostest ros/${name}.test ros/${name}_rostest.cpp)
   target_link_libraries(${name}_rostest early_fusion_ros ${ARGN} gtest)
   add_dependencies(build_tests ${name}_rostest)
 endfunction()
