@@ -23,15 +23,6 @@ inline Greatest greatest(const Lanes& a, const Lanes& b, const Lanes& c, const L
   return best;
 }
 
-inline void storeBytes(std::uint8_t* to, const IntLanes& v) {
-  const ByteLanes bytes = __builtin_convertvector(v, ByteLanes);
-  std::memcpy(to, &bytes, sizeof bytes);
-}
-
-inline IntLanes loadBytes(const std::uint8_t* from) {
-  return __builtin_convertvector(loadVector<ByteLanes>(from), IntLanes);
-}
-
 /// The window at (row, column) of a map whose rows and columns may be the first or the last, channels [c, c + kLanes).
 template <class T>
 Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int row, int column, int c) {
@@ -94,7 +85,7 @@ void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std
         const Lanes kept = rounded(positive, z + at);
         sum += kept;
         square_sum += kept * kept;
-        storeBytes(choice + at, best.value > 0.f ? best.index : IntLanes{} + kNoChoice);
+        storeBytes(choice + at, best.index);
       });
       addTo(sums + c, sum);
       addTo(sums + channels + c, square_sum);
@@ -159,37 +150,50 @@ inline void addBorderWindow(const MapShape& shape, const Lanes& dz, const IntLan
   }
 }
 
+/// One pooled row of poolBackward(), channels [c, c + kLanes); adds to sums, one for each border case.
+template <class T>
+inline void poolRowBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice,
+                            const NormGradient& norm, int row, int c, T* dy, Lanes* sums) {
+  const int columns = shape.width / 2;
+  const int channels = shape.channels;
+  const bool border_row = row == 0 || row == shape.height / 2 - 1;
+  const Lanes a = loadLanes(norm.a + c), b = loadLanes(norm.b + c), constant = loadLanes(norm.c + c);
+  T* top = dy + std::size_t(2 * row) * shape.width * channels + c;
+  T* bottom = top + std::size_t(shape.width) * channels;
+  Lanes inner_sum{};
+  for (int column = 0; column < columns; ++column) {
+    const std::size_t at = (std::size_t(row) * columns + column) * channels + c;
+    const std::size_t left = std::size_t(2 * column) * channels;
+    const Lanes pooled = loadLanes(z + at);
+    const Lanes dz = pooled > 0.f ? a * loadLanes(dx + at) + b * pooled + constant : Lanes{};
+    const auto chosen = loadBytesAs<T>(choice + at);
+    const auto stored = pack<T>(dz);
+    storeVector(top + left, chosen == 0 ? stored : decltype(stored){});
+    storeVector(top + left + channels, chosen == 1 ? stored : decltype(stored){});
+    storeVector(bottom + left, chosen == 2 ? stored : decltype(stored){});
+    storeVector(bottom + left + channels, chosen == 3 ? stored : decltype(stored){});
+    if (border_row || column == 0 || column == columns - 1) {
+      addBorderWindow(shape, dz, loadBytes(choice + at), row, column, sums);
+    } else {
+      inner_sum += dz;
+    }
+  }
+  sums[4] += inner_sum;
+}
+
 }  // namespace
 
 template <class T>
 void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
                   T* dy, double* border_sums) {
-  const int rows = shape.height / 2;
-  const int columns = shape.width / 2;
-  const int channels = shape.channels;
-  std::memset(border_sums, 0, kBorderCases * sizeof(double) * channels);
-  for (int row = 0; row < rows; ++row) {
-    for (int c = 0; c < channels; c += kLanes) {
-      const Lanes a = loadLanes(norm.a + c), b = loadLanes(norm.b + c), constant = loadLanes(norm.c + c);
-      T* top = dy + std::size_t(2 * row) * shape.width * channels + c;
-      T* bottom = top + std::size_t(shape.width) * channels;
+  std::memset(border_sums, 0, kBorderCases * sizeof(double) * shape.channels);
+  for (int row = 0; row < shape.height / 2; ++row) {
+    for (int c = 0; c < shape.channels; c += kLanes) {
       Lanes sums[kBorderCases]{};
-      for (int column = 0; column < columns; ++column) {
-        const std::size_t at = (std::size_t(row) * columns + column) * channels + c;
-        const std::size_t left = std::size_t(2 * column) * channels;
-        const IntLanes chosen = loadBytes(choice + at);
-        const Lanes dz = a * loadLanes(dx + at) + b * loadLanes(z + at) + constant;
-        storeLanes(top + left, chosen == 0 ? dz : Lanes{});
-        storeLanes(top + left + channels, chosen == 1 ? dz : Lanes{});
-        storeLanes(bottom + left, chosen == 2 ? dz : Lanes{});
-        storeLanes(bottom + left + channels, chosen == 3 ? dz : Lanes{});
-        if (row == 0 || row == rows - 1 || column == 0 || column == columns - 1) {
-          addBorderWindow(shape, dz, chosen, row, column, sums);
-        } else {
-          sums[4] += chosen < kNoChoice ? dz : Lanes{};
-        }
+      poolRowBackward(shape, dx, z, choice, norm, row, c, dy, sums);
+      for (int border = 0; border < kBorderCases; ++border) {
+        addTo(border_sums + border * shape.channels + c, sums[border]);
       }
-      for (int border = 0; border < kBorderCases; ++border) addTo(border_sums + border * channels + c, sums[border]);
     }
   }
 }

@@ -3,6 +3,10 @@
 #include <cstdint>
 #include <cstring>
 
+#if defined(__AVX512BW__)
+#include <immintrin.h>
+#endif
+
 namespace early_fusion::nn {
 
 /// The upper half of a float: its range, 8 significant bits. Storage only; arithmetic is done in float.
@@ -32,21 +36,76 @@ inline Vector loadVector(const void* from) {
 }
 
 inline Lanes loadLanes(const float* from) { return loadVector<Lanes>(from); }
+inline void storeVector(void* to, const Lanes& v) { std::memcpy(to, &v, sizeof v); }
+inline void storeVector(void* to, const HalfLanes& v) { std::memcpy(to, &v, sizeof v); }
+
+// GCC 12 makes poor code of conversions between widths, so where it matters most they are spelled out.
+#if defined(__AVX512BW__)
+
+inline Lanes loadLanes(const bfloat16* from) {
+  const __m512i wide = _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+  return (Lanes)_mm512_slli_epi32(wide, 16);
+}
+
+inline IntLanes loadBytes(const std::uint8_t* from) {
+  return (IntLanes)_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+}
+
+inline void storeBytes(std::uint8_t* to, const IntLanes& v) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm512_cvtepi32_epi8((__m512i)v));
+}
+
+inline HalfLanes lowHalves(const IntLanes& v) { return (HalfLanes)_mm512_cvtepi32_epi16((__m512i)v); }
+
+#else
 
 inline Lanes loadLanes(const bfloat16* from) {
   const IntLanes wide = __builtin_convertvector(loadVector<HalfLanes>(from), IntLanes) << 16;
   return loadVector<Lanes>(&wide);
 }
 
-inline void storeLanes(float* to, const Lanes& v) { std::memcpy(to, &v, sizeof v); }
+inline IntLanes loadBytes(const std::uint8_t* from) {
+  return __builtin_convertvector(__builtin_convertvector(loadVector<ByteLanes>(from), HalfLanes), IntLanes);
+}
 
-/// Rounds to nearest, ties to even; a NaN stays one.
-inline void storeLanes(bfloat16* to, const Lanes& v) {
-  const IntLanes bits = loadVector<IntLanes>(&v);
-  const IntLanes rounded = (bits + 0x7fff + ((bits >> 16) & 1)) >> 16;
-  const IntLanes kept = v == v ? rounded : (bits >> 16) | 0x40;
-  const HalfLanes half = __builtin_convertvector(kept, HalfLanes);
-  std::memcpy(to, &half, sizeof half);
+inline void storeBytes(std::uint8_t* to, const IntLanes& v) {
+  const ByteLanes bytes = __builtin_convertvector(__builtin_convertvector(v, HalfLanes), ByteLanes);
+  std::memcpy(to, &bytes, sizeof bytes);
+}
+
+inline HalfLanes lowHalves(const IntLanes& v) { return __builtin_convertvector(v, HalfLanes); }
+
+#endif
+
+/// What a map of T stores of v: for bfloat16 the nearest, ties to even; a NaN stays one.
+template <class T>
+inline auto pack(const Lanes& v) {
+  if constexpr (sizeof(T) == sizeof(float)) {
+    return v;
+  } else {
+#if defined(__AVX512BF16__)
+    return (HalfLanes)_mm512_cvtneps_pbh((__m512)v);  // takes what is below 2^-126 for 0
+#else
+    const IntLanes bits = loadVector<IntLanes>(&v);
+    const IntLanes rounded = (bits + 0x7fff + ((bits >> 16) & 1)) >> 16;
+    return lowHalves(v == v ? rounded : (bits >> 16) | 0x40);
+#endif
+  }
+}
+
+template <class T>
+inline void storeLanes(T* to, const Lanes& v) {
+  storeVector(to, pack<T>(v));
+}
+
+/// loadBytes() in vectors of T's width.
+template <class T>
+inline auto loadBytesAs(const std::uint8_t* from) {
+  if constexpr (sizeof(T) == sizeof(float)) {
+    return loadBytes(from);
+  } else {
+    return __builtin_convertvector(loadVector<ByteLanes>(from), HalfLanes);
+  }
 }
 
 inline void addTo(double* sums, const Lanes& v) {

@@ -21,11 +21,9 @@ inline constexpr int kBorderCases = 9;
 
 inline int borderCase(int pixel, int size) { return pixel == 0 ? 0 : pixel == size - 1 ? 2 : 1; }
 
-/// What `choice` holds where ReLU let nothing through; else 2 * row + column of the greatest in the 2x2 window.
-inline constexpr std::uint8_t kNoChoice = 4;
-
 /// Adds the bias, takes the maximum of every 2x2 window, and ReLU: the pass after a convolution, in training.
-/// y (H,W,C), bias (9,C) -> z (H/2,W/2,C), choice (H/2,W/2,C); writes to sums (2,C) the sum of z and of its squares.
+/// y (H,W,C), bias (9,C) -> z (H/2,W/2,C), choice (H/2,W/2,C), 2 * row + column of the greatest in its window; writes
+/// to sums (2,C) the sum of z and of its squares.
 template <class T>
 void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std::uint8_t* choice, double* sums);
 
