@@ -42,7 +42,7 @@ std::unique_ptr<Agent> makeExpertAgent();
 /// Uniformly random actions: a baseline.
 std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed);
 
-/// Does nothing, ever: the other baseline, whose agreement is the expert's share of IDLE.
+/// Does nothing, ever: the other baseline.
 std::unique_ptr<Agent> makeIdleAgent();
 
 /// Does again what was done: actions[i] are those of episode episodes[i].
