@@ -17,7 +17,7 @@ constexpr double kRoomHeight = 2.5;
 constexpr double kCounterDepth = 0.75;
 constexpr double kCounterWidth = 3.2;
 constexpr double kCounterThickness = 0.04;
-constexpr double kSplashHeight = 0.42;
+constexpr double kSplashHeight = 0.46;
 // Large faces are cut up, since the whole of a triangle is clipped where a corner is far out of view.
 constexpr double kPiece = 0.4;
 
