@@ -8,7 +8,6 @@ namespace early_fusion::sim {
 namespace {
 
 using ThreeLanes = std::array<FloatLanes, 3>;
-using Record __attribute__((vector_size(sizeof(ShadingVertex)))) = float;
 using HalfLanes __attribute__((vector_size(4 * kLanes))) = std::uint16_t;
 
 constexpr float kAmbient = 0.40f;
@@ -17,15 +16,30 @@ constexpr float kDiffuse = 0.72f;
 constexpr int kGlossDoublings = 5;  // exponent 2^5 of the highlight
 constexpr float kTiny = 1e-20f;     // keeps the length of a vanishing normal from being a divisor of zero
 constexpr int kSumBits = 10;
-constexpr std::uint32_t kBackground = 168u | 172u << kSumBits | 176u << (2 * kSumBits);
+constexpr std::int32_t kBackground = 168 | 172 << kSumBits | 176 << (2 * kSumBits);
 constexpr int kMaxLevel = 30;
 constexpr int kFractionBits = 4;  // of a texel
 
-Record loadRecord(const ShadingVertex& vertex) {
-  Record record;
-  std::memcpy(&record, &vertex, sizeof record);
-  return record;
-}
+/// By coverage: how many samples, and their middle from the pixel's top left corner [subsamples].
+struct CoverageTable {
+  std::int32_t count[16] = {};
+  float middle_x[16] = {}, middle_y[16] = {};
+
+  constexpr CoverageTable() {
+    for (int coverage = 1; coverage < 16; ++coverage) {
+      int right = 0, below = 0;
+      for (int sample = 0; sample < 4; ++sample) {
+        const int covered = coverage >> sample & 1;
+        count[coverage] += covered;
+        right += covered * (sample % 2);
+        below += covered * (sample / 2);
+      }
+      middle_x[coverage] = kSubsamples * (0.5f + static_cast<float>(right) / static_cast<float>(count[coverage]));
+      middle_y[coverage] = kSubsamples * (0.5f + static_cast<float>(below) / static_cast<float>(count[coverage]));
+    }
+  }
+};
+constexpr CoverageTable kCoverage;
 
 FloatLanes dot(const ThreeLanes& a, const ThreeLanes& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -86,7 +100,10 @@ FloatLanes highlight(const ThreeLanes& normal, const ThreeLanes& ray) {
 }  // namespace
 
 FragmentShader::FragmentShader(const RenderAssets& assets, const ShadowMap& shadow_map, int image_size)
-    : assets_(assets), shadow_map_(shadow_map), sums_(static_cast<std::size_t>(image_size) * image_size) {}
+    : assets_(assets),
+      image_size_(image_size),
+      shadow_map_(shadow_map),
+      sums_(static_cast<std::size_t>(image_size) * image_size) {}
 
 void FragmentShader::begin(const Viewpoint& viewpoint, const MeshDrawer& drawer) {
   viewpoint_ = viewpoint;
@@ -96,85 +113,97 @@ void FragmentShader::begin(const Viewpoint& viewpoint, const MeshDrawer& drawer)
   count_ = 0;
 }
 
-void FragmentShader::add(std::int32_t id, float x, float y, std::int32_t samples, std::int32_t pixel) {
-  if (id == 0) {
-    sums_[pixel] += samples * kBackground;
-    return;
-  }
-  const VisibleTriangle& triangle = triangles_[id];
-  const ShadingVertex& a = vertices_[triangle.corner[0]];
-  const ShadingVertex& b = vertices_[triangle.corner[1]];
-  const ShadingVertex& c = vertices_[triangle.corner[2]];
-  // Clamped, because the areas of a long sliver's parts are not exact.
-  float weight_b = ((x - a.x) * (c.y - a.y) - (c.x - a.x) * (y - a.y)) * triangle.inverse_area;
-  float weight_c = ((b.x - a.x) * (y - a.y) - (x - a.x) * (b.y - a.y)) * triangle.inverse_area;
-  weight_b = std::min(std::max(weight_b, 0.f), 1.f);
-  weight_c = std::min(std::max(weight_c, 0.f), 1.f - weight_b);
-  const float weight_a = 1.f - weight_b - weight_c;
-  const Record attributes = loadRecord(a) * weight_a + loadRecord(b) * weight_b + loadRecord(c) * weight_c;
-  std::memcpy(&attributes_[count_], &attributes, sizeof attributes);
-  const Material& material = assets_.materials[triangle.material];
-  texture_scale_[count_] = triangle.texture_scale;
-  specular_[count_] = material.specular;
-  first_texel_[count_] = material.first_texel;
-  texture_size_[count_] = material.size;
-  samples_[count_] = samples;
-  pixel_[count_] = pixel;
-  if (++count_ == kCapacity) shade();
-}
-
 void FragmentShader::shade() {
-  for (int first = 0; first < count_; first += kLanes) shadeLanes(first);
+  alignas(64) std::uint32_t colors[kLanes];
+  alignas(64) std::int32_t pixels[kLanes];
+  for (int first = 0; first < count_; first += kLanes) {
+    const IntLanes no_triangle = loadLanes<IntLanes>(id_ + first) == 0;
+    const IntLanes mean = select(no_triangle, allLanes(kBackground), color(interpolate(first)));
+    const IntLanes sum = mean * gather<IntLanes>(kCoverage.count, loadLanes<IntLanes>(coverage_ + first));
+    const IntLanes pixel = loadLanes<IntLanes>(pixel_y_ + first) * image_size_ + loadLanes<IntLanes>(pixel_x_ + first);
+    std::memcpy(colors, &sum, sizeof colors);
+    std::memcpy(pixels, &pixel, sizeof pixels);
+    const int lanes = std::min(kLanes, count_ - first);
+    for (int lane = 0; lane < lanes; ++lane) sums_[pixels[lane]] += colors[lane];
+  }
   count_ = 0;
 }
 
-void FragmentShader::shadeLanes(int first) {
-  const EightColumns column = columnsFromRecords(&attributes_[first].x);
-  const FloatLanes w = 1.f / column[2];
-  const ThreeLanes normal = normalized({column[5], column[6], column[7]});
-  const FloatLanes camera_x = (column[0] - viewpoint_.centre) * (1.f / viewpoint_.focal_length);
-  const FloatLanes camera_y = (column[1] - viewpoint_.centre) * (1.f / viewpoint_.focal_length);
+FragmentShader::Attributes FragmentShader::interpolate(int first) const {
+  constexpr int kRecord = 8;
+  std::int32_t offset[kLanes];
+  Columns<kRecord> corner[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * triangles_[id_[first + lane]].corner[k];
+    corner[k] = gatherRecords<kRecord>(&vertices_->x, offset);
+  }
+  for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * id_[first + lane];
+  const Columns<kRecord> triangle = gatherRecords<kRecord>(&triangles_->inverse_area, offset);
+  const auto &a = corner[0], &b = corner[1], &c = corner[2];
+  const IntLanes coverage = loadLanes<IntLanes>(coverage_ + first);
+  const FloatLanes x = toFloat(loadLanes<IntLanes>(pixel_x_ + first) * (2 * kSubsamples)) +
+                       gather<FloatLanes>(kCoverage.middle_x, coverage);
+  const FloatLanes y = toFloat(loadLanes<IntLanes>(pixel_y_ + first) * (2 * kSubsamples)) +
+                       gather<FloatLanes>(kCoverage.middle_y, coverage);
+  const FloatLanes zero{}, one = allLanes(1.f);
+  // Clamped, because the areas of a long sliver's parts are not exact.
+  FloatLanes weight_b = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) * triangle[0];
+  FloatLanes weight_c = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) * triangle[0];
+  weight_b = lowest(highest(weight_b, zero), one);
+  weight_c = lowest(highest(weight_c, zero), one - weight_b);
+  const FloatLanes weight_a = one - weight_b - weight_c;
+  const auto at = [&](int column) { return a[column] * weight_a + b[column] * weight_b + c[column] * weight_c; };
+  const FloatLanes w = 1.f / at(2);
+  return {x, y, w, at(3) * w, at(4) * w, {at(5), at(6), at(7)}, triangle[1], bitsOf(triangle[2])};
+}
+
+IntLanes FragmentShader::color(const Attributes& at) const {
+  const ThreeLanes normal = normalized(at.normal);
+  const FloatLanes camera_x = (at.x - viewpoint_.centre) * (1.f / viewpoint_.focal_length);
+  const FloatLanes camera_y = (at.y - viewpoint_.centre) * (1.f / viewpoint_.focal_length);
   ThreeLanes ray, point;
   for (int i = 0; i < 3; ++i) {
     const float* row = viewpoint_.world_from_camera.rotation[i];
     ray[i] = row[0] * camera_x + row[1] * camera_y + row[2];
-    point[i] = ray[i] * w + viewpoint_.world_from_camera.translation[i];
+    point[i] = ray[i] * at.w + viewpoint_.world_from_camera.translation[i];
   }
   FloatLanes direct = highest(dot(normal, kTowardsLight), FloatLanes{});
   const IntLanes faces_light = direct > 0.f;
   const FloatLanes lit = shadow_map_.lit(point, normal, faces_light);
   direct *= lit;
 
-  const IntLanes full_size = loadLanes<IntLanes>(&texture_size_[first]);
+  static_assert(sizeof(Material) == 4 * sizeof(float));
+  const IntLanes material = at.material * 4;
+  const IntLanes full_size = gather<IntLanes>(&assets_.materials[0].size, material);
   const FloatLanes edge = toFloat(full_size);
-  const IntLanes level = mipLevel(loadLanes<FloatLanes>(&texture_scale_[first]) * (w * w * w) * (edge * edge));
-  const IntLanes size = highest(full_size >> level, allLanes(1));
-  const TwoColors texture = sampleTextures(assets_.texels.data(), loadLanes<IntLanes>(&first_texel_[first]), size,
-                                           column[3] * w, column[4] * w);
+  const IntLanes level = mipLevel(at.texture_scale * (at.w * at.w * at.w) * (edge * edge));
+  const TwoColors texture =
+      sampleTextures(assets_.texels.data(), gather<IntLanes>(&assets_.materials[0].first_texel, material),
+                     highest(full_size >> level, allLanes(1)), at.u, at.v);
 
   const FloatLanes gain = (kAmbient + kAmbientFromAbove * normal[2] + kDiffuse * direct) * (1.f / 256.f);
   FloatLanes white = allLanes(0.5f);  // rounds to the nearest
-  const FloatLanes specular = loadLanes<FloatLanes>(&specular_[first]);
+  const FloatLanes specular = gather<FloatLanes>(&assets_.materials[0].specular, material);
   if (maskBits(specular > 0.f) != 0) {
     white += select(faces_light, highlight(normal, ray) * lit, FloatLanes{}) * specular * 255.f;
   }
   const auto channel = [&](IntLanes value) {
     return truncate(lowest(toFloat(value & 0xffff) * gain + white, allLanes(255.f)));
   };
-  const IntLanes color = (channel(texture.red_blue) | channel(texture.green_alpha) << kSumBits |
-                          channel(texture.red_blue >> 16) << (2 * kSumBits)) *
-                         loadLanes<IntLanes>(&samples_[first]);
-  const int lanes = std::min(kLanes, count_ - first);
-  for (int lane = 0; lane < lanes; ++lane) sums_[pixel_[first + lane]] += color[lane];
+  return channel(texture.red_blue) | channel(texture.green_alpha) << kSumBits |
+         channel(texture.red_blue >> 16) << (2 * kSumBits);
 }
 
 void FragmentShader::finish(core::Image& image) {
   shade();
-  for (std::size_t pixel = 0; pixel < sums_.size(); ++pixel) {
-    for (int channel = 0; channel < 3; ++channel) {
-      const std::uint32_t sum = sums_[pixel] >> (channel * kSumBits) & ((1u << kSumBits) - 1);
-      image.rgb[3 * pixel + channel] = static_cast<std::uint8_t>((sum + 2) / 4);
-    }
+  std::uint8_t* rgb = image.rgb.data();
+  for (const std::uint32_t sum : sums_) {
+    // A quarter of each channel's sum, rounded: 4 * 255 + 2 does not reach into the next channel.
+    const std::uint32_t mean = (sum + (2u | 2u << kSumBits | 2u << (2 * kSumBits))) >> 2;
+    rgb[0] = static_cast<std::uint8_t>(mean);
+    rgb[1] = static_cast<std::uint8_t>(mean >> kSumBits);
+    rgb[2] = static_cast<std::uint8_t>(mean >> (2 * kSumBits));
+    rgb += 3;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,34 +26,53 @@ class FragmentShader {
   /// Begins a picture of what `drawer` drew.
   void begin(const Viewpoint& viewpoint, const MeshDrawer& drawer);
 
-  /// Adds a fragment. @param x, y middle of the samples that it covers [subsamples]
-  /// @param samples how many of the pixel's four @param id of the triangle, 0 where there is none
-  void add(std::int32_t id, float x, float y, std::int32_t samples, std::int32_t pixel);
+  /// Adds a fragment.
+  /// @param id of the triangle, 0 where there is none
+  /// @param coverage which of the pixel's four samples belong to it: bit 0 top left, 1 top right, 2 and 3 below
+  void add(std::int32_t id, int coverage, int x, int y) { addIf(true, id, coverage, x, y); }
+
+  /// Without a branch on `really`.
+  void addIf(bool really, std::int32_t id, int coverage, int x, int y) {
+    id_[count_] = id;
+    coverage_[count_] = coverage;
+    pixel_x_[count_] = x;
+    pixel_y_[count_] = y;
+    count_ += really;
+    if (count_ == kCapacity) shade();
+  }
 
   /// Finishes the picture: the mean of each pixel's four samples.
   void finish(core::Image& image);
 
  private:
-  static constexpr int kCapacity = 256;  // what is in hand stays in the first level cache
+  static constexpr int kCapacity = 256;
+
+  /// What is interpolated over a triangle, and what is the same all over it.
+  struct Attributes {
+    FloatLanes x, y;     ///< on the screen [subsamples]
+    FloatLanes w, u, v;  ///< depth [m] and texture coordinates
+    std::array<FloatLanes, 3> normal;
+    FloatLanes texture_scale;
+    IntLanes material;
+  };
 
   void shade();
-  void shadeLanes(int first);
+  Attributes interpolate(int first) const;
+  IntLanes color(const Attributes& attributes) const;
 
   const RenderAssets& assets_;
+  int image_size_;
   const ShadowMap& shadow_map_;
   Viewpoint viewpoint_;
   const ShadingVertex* vertices_ = nullptr;
   const VisibleTriangle* triangles_ = nullptr;
 
-  // Fragments in hand, one element each.
+  // Fragments in hand, one element each; what lies beyond count_ is left from earlier ones.
   int count_ = 0;
-  alignas(64) ShadingVertex attributes_[kCapacity] = {};
-  alignas(64) float texture_scale_[kCapacity] = {};
-  alignas(64) float specular_[kCapacity] = {};
-  alignas(64) std::int32_t first_texel_[kCapacity] = {};
-  alignas(64) std::int32_t texture_size_[kCapacity] = {};
-  alignas(64) std::int32_t samples_[kCapacity] = {};
-  alignas(64) std::int32_t pixel_[kCapacity] = {};
+  alignas(64) std::int32_t id_[kCapacity] = {};
+  alignas(64) std::int32_t coverage_[kCapacity] = {};
+  alignas(64) std::int32_t pixel_x_[kCapacity] = {};
+  alignas(64) std::int32_t pixel_y_[kCapacity] = {};
 
   // Of each pixel: the sum over its samples, ten bits a channel, red lowest.
   std::vector<std::uint32_t> sums_;

@@ -31,6 +31,7 @@ FloatLanes rotated(const float (&row)[3], FloatLanes x, FloatLanes y, FloatLanes
 
 void MeshDrawer::clear() {
   triangles_.assign(1, VisibleTriangle{});
+  reserveLanes(vertices_, 1);
   first_vertex_ = 0;
   mesh_vertices_ = 0;
 }
@@ -84,10 +85,10 @@ void MeshDrawer::transform(const RenderMesh& mesh, const RenderPose& world_from_
     depth_[i] = inverse_w;
     const FloatLanes nx = mesh.normal[0][i], ny = mesh.normal[1][i], nz = mesh.normal[2][i];
     const auto& rows = world_from_mesh.rotation;
-    storeAsRecords({toFloat(screen_x_[i]), toFloat(screen_y_[i]), inverse_w, mesh.uv[0][i] * inverse_w,
-                    mesh.uv[1][i] * inverse_w, rotated(rows[0], nx, ny, nz) * inverse_w,
-                    rotated(rows[1], nx, ny, nz) * inverse_w, rotated(rows[2], nx, ny, nz) * inverse_w},
-                   &vertices_[first_vertex_ + i * kLanes].x);
+    storeRecords<8>({toFloat(screen_x_[i]), toFloat(screen_y_[i]), inverse_w, mesh.uv[0][i] * inverse_w,
+                     mesh.uv[1][i] * inverse_w, rotated(rows[0], nx, ny, nz) * inverse_w,
+                     rotated(rows[1], nx, ny, nz) * inverse_w, rotated(rows[2], nx, ny, nz) * inverse_w},
+                    &vertices_[first_vertex_ + i * kLanes].x);
   }
 }
 
@@ -189,10 +190,10 @@ void MeshDrawer::keep(const Triangles& triangles, int batch, std::uint32_t accep
                                    batch_.inverse_area * kSubsamplesPerPixel;
   for (; accepted != 0; accepted &= accepted - 1) {
     const int lane = __builtin_ctz(accepted);
-    std::array<std::int32_t, 3> corner;
-    for (int k = 0; k < 3; ++k) corner[k] = first_vertex_ + triangles.corner[k][batch][lane];
-    triangles_.push_back(
-        {corner, triangles.material[batch * kLanes + lane], batch_.inverse_area[lane], texture_scale[lane]});
+    VisibleTriangle triangle{
+        batch_.inverse_area[lane], texture_scale[lane], triangles.material[batch * kLanes + lane], {}};
+    for (int k = 0; k < 3; ++k) triangle.corner[k] = first_vertex_ + triangles.corner[k][batch][lane];
+    triangles_.push_back(triangle);
   }
 }
 

@@ -20,12 +20,13 @@ struct alignas(32) ShadingVertex {
 static_assert(sizeof(ShadingVertex) == 8 * sizeof(float));
 
 /// A triangle that has at least one sample in its bounding box.
-struct VisibleTriangle {
-  std::array<std::int32_t, 3> corner;  ///< into MeshDrawer::vertices()
-  std::int32_t material;
+struct alignas(32) VisibleTriangle {
   float inverse_area;   ///< of twice the area [1 / subsamples^2]
   float texture_scale;  ///< times w^3 and the texture's size^2: texels per pixel, in area, at depth w
+  std::int32_t material;
+  std::int32_t corner[3];  ///< into MeshDrawer::vertices()
 };
+static_assert(sizeof(VisibleTriangle) == 8 * sizeof(float));
 
 /// Takes meshes through transformation, clipping, culling and set-up to the samples of a screen, and keeps what shading
 /// needs of them. Grows its memory with the first pictures, then keeps it.

@@ -60,7 +60,9 @@ class Rasterizer::Implementation {
         assets_(sharedRenderAssets(world)),
         shadow_map_(world),
         samples_(2 * image_size, 2 * image_size, true),
-        shader_(*assets_, shadow_map_, image_size) {}
+        shader_(*assets_, shadow_map_, image_size),
+        whole_(image_size + 1),
+        mixed_(image_size + 1) {}
 
   void setScene(const std::vector<Instance>& instances, InstanceMask present) {
     std::vector<Instance> standing;
@@ -89,36 +91,33 @@ class Rasterizer::Implementation {
     }
     for (const RenderMesh& cluster : assets_->kitchen) drawer_.draw(cluster, identity_, projection, samples_);
     shader_.begin(viewpoint, drawer_);
-    for (int y = 0; y < image_size_; ++y) {
-      for (int x = 0; x < image_size_; ++x) addFragments(x, y);
-    }
+    for (int y = 0; y < image_size_; ++y) addFragments(y);
     shader_.finish(image);
   }
 
  private:
-  /// One fragment for each of the different triangles that the pixel's four samples see.
-  void addFragments(int x, int y) {
-    const std::int32_t* ids = samples_.ids() + samples_.pixelOffset(x, y);
-    const std::int32_t pixel = y * image_size_ + x;
-    const auto corner_x = static_cast<float>(2 * kSubsamples * x), corner_y = static_cast<float>(2 * kSubsamples * y);
-    if (ids[0] == ids[1] && ids[0] == ids[2] && ids[0] == ids[3]) {
-      shader_.add(ids[0], corner_x + kSubsamples, corner_y + kSubsamples, 4, pixel);
-      return;
+  /// One fragment for each of the different triangles that a pixel's four samples see. Without branches on what they
+  /// see, which no processor can foresee: pixels that see one triangle are told from the others first.
+  void addFragments(int y) {
+    int whole = 0, mixed = 0;
+    for (int x = 0; x < image_size_; ++x) {
+      const std::int32_t* id = samples_.ids() + samples_.pixelOffset(x, y);
+      const bool is_whole = (id[0] == id[1]) & (id[0] == id[2]) & (id[0] == id[3]);
+      whole_[whole] = mixed_[mixed] = x;
+      whole += is_whole;
+      mixed += !is_whole;
     }
-    for (int i = 0; i < 4; ++i) {
-      bool is_first = true;
-      for (int j = 0; j < i; ++j) is_first = is_first && ids[j] != ids[i];
-      if (!is_first) continue;
-      int count = 0, right = 0, below = 0;
-      for (int j = i; j < 4; ++j) {
-        if (ids[j] != ids[i]) continue;
-        ++count;
-        right += j % 2;
-        below += j / 2;
-      }
-      const float share = static_cast<float>(kSubsamples) / static_cast<float>(count);
-      shader_.add(ids[i], corner_x + 0.5f * kSubsamples + share * static_cast<float>(right),
-                  corner_y + 0.5f * kSubsamples + share * static_cast<float>(below), count, pixel);
+    for (int i = 0; i < whole; ++i) {
+      shader_.add(samples_.ids()[samples_.pixelOffset(whole_[i], y)], 0xf, whole_[i], y);
+    }
+    for (int i = 0; i < mixed; ++i) {
+      const std::int32_t* id = samples_.ids() + samples_.pixelOffset(mixed_[i], y);
+      const int same01 = id[0] == id[1], same02 = id[0] == id[2], same03 = id[0] == id[3];
+      const int same12 = id[1] == id[2], same13 = id[1] == id[3], same23 = id[2] == id[3];
+      shader_.add(id[0], 1 | same01 << 1 | same02 << 2 | same03 << 3, mixed_[i], y);
+      shader_.addIf(!same01, id[1], 2 | same12 << 2 | same13 << 3, mixed_[i], y);
+      shader_.addIf(!(same02 | same12), id[2], 4 | same23 << 3, mixed_[i], y);
+      shader_.addIf(!(same03 | same13 | same23), id[3], 8, mixed_[i], y);
     }
   }
 
@@ -135,6 +134,7 @@ class Rasterizer::Implementation {
   SampleBuffer samples_;
   MeshDrawer drawer_;
   FragmentShader shader_;
+  std::vector<int> whole_, mixed_;  // pixels of a row
   std::vector<Instance> standing_;
   std::vector<ShadowMap::Caster> objects_;
   const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());

@@ -164,6 +164,8 @@ void addClusters(Soup& soup, Triangle* first, Triangle* last, std::vector<Render
 
 std::shared_ptr<const RenderAssets> makeRenderAssets(const World& world) {
   auto assets = std::make_shared<RenderAssets>();
+  assets->texels = {0};  // and a material for what has none
+  assets->materials = {Material{}};
   const RenderPose identity = renderPose(Eigen::Isometry3d::Identity());
   for (int item = 0; item < world.objects.size(); ++item) {
     Soup soup;

@@ -12,7 +12,7 @@
 namespace early_fusion::sim {
 
 /// A texture with its mip levels, and how it shines.
-struct Material {
+struct alignas(16) Material {
   std::int32_t first_texel = 0;  ///< into RenderAssets::texels: levels from 1x1 up, row-major, 0xAABBGGRR
   std::int32_t size = 1;         ///< edge of the largest level [texels], a power of two
   float specular = 0.f;

@@ -34,12 +34,6 @@ SampleBuffer::SampleBuffer(int width, int height, bool with_ids)
   assert(width <= kMaxScreenSize && height <= kMaxScreenSize);
 }
 
-int SampleBuffer::pixelOffset(int x, int y) const {
-  const int block = 2 * y / kBlockHeight * blocks_per_row_ + 2 * x / kBlockWidth;
-  const int pixel = y % (kBlockHeight / 2) * kPixelsAcross + x % kPixelsAcross;
-  return block * kLanes + 4 * pixel;
-}
-
 void SampleBuffer::copyDepth(std::vector<float>& rows) const {
   rows.resize(static_cast<std::size_t>(width_) * height_);
   const auto* blocks = reinterpret_cast<const float*>(depth_.data());

@@ -22,7 +22,10 @@ class SampleBuffer {
   const std::int32_t* ids() const { return reinterpret_cast<const std::int32_t*>(ids_.data()); }
 
   /// Where pixel (x, y)'s four samples begin in ids().
-  int pixelOffset(int x, int y) const;
+  int pixelOffset(int x, int y) const {
+    const int block = 2 * y / kBlockHeight * blocks_per_row_ + 2 * x / kBlockWidth;
+    return block * kLanes + 4 * (y % (kBlockHeight / 2) * kPixelsAcross + x % kPixelsAcross);
+  }
 
   /// All depths, row by row.
   void copyDepth(std::vector<float>& rows) const;
@@ -35,6 +38,8 @@ class SampleBuffer {
   void fill(const TriangleBatch& batch, int lane, std::int32_t id);
 
  private:
+  static constexpr int kPixelsAcross = kBlockWidth / 2;
+
   template <bool kWithIds>
   void fillBlocks(const TriangleBatch& batch, int lane, std::int32_t id);
 

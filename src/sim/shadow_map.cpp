@@ -10,8 +10,9 @@ namespace {
 
 constexpr int kLongSide = 736;  // [texels]: about 3 mm each on a counter of 2 m, less than a pixel sees
 constexpr int kMargin = 8;      // [texels] that no object reaches
-constexpr int kCellSize = 8;    // [texels]
-constexpr int kFilterSize = 4;  // [texels]
+constexpr int kCellBits = 3;
+constexpr int kCellSize = 1 << kCellBits;  // [texels]
+constexpr int kFilterSize = 4;             // [texels]
 constexpr float kOffset =
     2.25f;  // [texels] along the normal: half the filter and some, so that no surface shades itself
 constexpr float kNothing = -std::numeric_limits<float>::max();
@@ -133,7 +134,7 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
       needed & (first_x >= 0) & (first_x <= width_ - kFilterSize) & (first_y >= 0) & (first_y <= height_ - kFilterSize);
   if (maskBits(inside) == 0) return allLanes(1.f);
   // Most points are far from a shadow's edge: two numbers for a whole cell decide them as the filter would.
-  const IntLanes cell = (first_y / kCellSize * (width_ / kCellSize) + first_x / kCellSize) & inside;
+  const IntLanes cell = ((first_y >> kCellBits) * (width_ / kCellSize) + (first_x >> kCellBits)) & inside;
   const IntLanes all_lit = ~inside | (gather<FloatLanes>(cell_high_.data(), cell) <= depth);
   const IntLanes none_lit = gather<FloatLanes>(cell_low_.data(), cell) > depth;
   FloatLanes result = select(all_lit, allLanes(1.f), FloatLanes{});
@@ -148,13 +149,12 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
 /// Mean of the comparisons over a box of 3x3 texels about the point, texels at its rim by the share that is in the box.
 FloatLanes ShadowMap::filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y,
                                FloatLanes depth) const {
+  std::int32_t offset[kLanes];
+  std::memcpy(offset, &first_texel, sizeof offset);
   FloatLanes sum{};
   for (int row = 0; row < kFilterSize; ++row) {
-    const float* texels = depth_.data() + row * width_;
-    const auto lit = [&](int column) {
-      const IntLanes is_lit = gather<FloatLanes>(texels + column, first_texel) <= depth;
-      return select(is_lit, allLanes(1.f), FloatLanes{});
-    };
+    const Columns<kFilterSize> texels = gatherRecords<kFilterSize>(depth_.data() + row * width_, offset);
+    const auto lit = [&](int column) { return select(texels[column] <= depth, allLanes(1.f), FloatLanes{}); };
     const FloatLanes row_sum = (1.f - fraction_x) * lit(0) + lit(1) + lit(2) + fraction_x * lit(3);
     if (row == 0) {
       sum += (1.f - fraction_y) * row_sum;

@@ -98,11 +98,33 @@ Lanes gather(const void* base, IntLanes index) {
 #endif
 }
 
-/// kLanes records of eight numbers each, as eight vectors with one number of every record: in memory, one record after
-/// the other; in vectors, lane i belongs to record i.
-using EightColumns = std::array<FloatLanes, 8>;
+/// kLanes records of N numbers each, as N vectors with one number of every record: lane i belongs to record i.
+template <int N>
+using Columns = std::array<FloatLanes, N>;
 
 namespace detail {
+
+using Four __attribute__((vector_size(16))) = float;
+using Eight __attribute__((vector_size(32))) = float;
+
+/// kLanes numbers from the records laid end to end, from number `first` on.
+template <int N>
+FloatLanes laidEndToEnd(const float* base, const std::int32_t* offset, int first) {
+  const auto record = [=](int after) { return base + offset[first / N + after] + first % N; };
+  if constexpr (kLanes <= N) {
+    return loadLanes<FloatLanes>(record(0));
+  } else if constexpr (kLanes == 8) {
+    return __builtin_shufflevector(loadLanes<Four>(record(0)), loadLanes<Four>(record(1)), 0, 1, 2, 3, 4, 5, 6, 7);
+  } else {
+    Eight half[2];
+    for (int i = 0; i < 2; ++i) {
+      half[i] = N == 8 ? loadLanes<Eight>(record(i))
+                       : __builtin_shufflevector(loadLanes<Four>(record(2 * i)), loadLanes<Four>(record(2 * i + 1)), 0,
+                                                 1, 2, 3, 4, 5, 6, 7);
+    }
+    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+}
 
 template <int... I>
 FloatLanes evenLanes(FloatLanes a, FloatLanes b, std::integer_sequence<int, I...>) {
@@ -122,29 +144,32 @@ FloatLanes interleavedLanes(FloatLanes a, FloatLanes b, std::integer_sequence<in
 
 }  // namespace detail
 
-/// Every pass moves the lowest bit of an element's place to the top; after three, the column leads.
-inline EightColumns columnsFromRecords(const float* records) {
+/// The records of N = 4 or 8 numbers that begin at base[offset[0]], ..., base[offset[kLanes - 1]]. After they are laid
+/// end to end, every pass moves the lowest bit of a number's place to the top; in the end, the column leads.
+template <int N>
+Columns<N> gatherRecords(const float* base, const std::int32_t* offset) {
   constexpr auto kEach = std::make_integer_sequence<int, kLanes>();
-  EightColumns from, to;
-  std::memcpy(&from, records, sizeof from);
-  for (int pass = 0; pass < 3; ++pass) {
-    for (int i = 0; i < 4; ++i) {
+  Columns<N> from, to;
+  for (int j = 0; j < N; ++j) from[j] = detail::laidEndToEnd<N>(base, offset, j * kLanes);
+  for (int columns = 1; columns < N; columns *= 2) {
+    for (int i = 0; i < N / 2; ++i) {
       to[i] = detail::evenLanes(from[2 * i], from[2 * i + 1], kEach);
-      to[i + 4] = detail::oddLanes(from[2 * i], from[2 * i + 1], kEach);
+      to[i + N / 2] = detail::oddLanes(from[2 * i], from[2 * i + 1], kEach);
     }
     from = to;
   }
   return from;
 }
 
-/// The reverse of columnsFromRecords.
-inline void storeAsRecords(EightColumns from, float* records) {
+/// The reverse, to records that lie one after the other.
+template <int N>
+void storeRecords(Columns<N> from, float* records) {
   constexpr auto kEach = std::make_integer_sequence<int, kLanes>();
-  EightColumns to;
-  for (int pass = 0; pass < 3; ++pass) {
-    for (int i = 0; i < 4; ++i) {
-      to[2 * i] = detail::interleavedLanes<0>(from[i], from[i + 4], kEach);
-      to[2 * i + 1] = detail::interleavedLanes<kLanes / 2>(from[i], from[i + 4], kEach);
+  Columns<N> to;
+  for (int columns = 1; columns < N; columns *= 2) {
+    for (int i = 0; i < N / 2; ++i) {
+      to[2 * i] = detail::interleavedLanes<0>(from[i], from[i + N / 2], kEach);
+      to[2 * i + 1] = detail::interleavedLanes<kLanes / 2>(from[i], from[i + N / 2], kEach);
     }
     from = to;
   }

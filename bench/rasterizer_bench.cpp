@@ -1,0 +1,52 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "early_fusion/sim/rasterizer.h"
+#include "handmade_world.h"
+
+namespace early_fusion::sim {
+namespace {
+
+constexpr int kItems = 16;
+constexpr int kCells = 9;  // 972 triangles a box, about as many a ball
+constexpr int kImageSize = 128;
+
+const World& world() {
+  static const std::shared_ptr<const World> kitchen = handmadeKitchen(kItems, kCells);
+  return *kitchen;
+}
+
+/// A camera that wanders over the counter: another picture in every frame.
+Eigen::Isometry3d wanderingCamera(int frame) {
+  const double pan = 0.5 * std::sin(0.013 * frame), tilt = 0.45 + 0.15 * std::sin(0.031 * frame);
+  return lookAlong({0, 0, 1.35}, {std::cos(pan) * std::cos(tilt), std::sin(pan) * std::cos(tilt), -std::sin(tilt)});
+}
+
+/// Pictures a second; the argument is the number of objects. Every thread has a rasterizer of its own.
+void render(benchmark::State& state) {
+  Rasterizer rasterizer(world(), kImageSize);
+  rasterizer.setScene(handmadeScene(static_cast<int>(state.range(0)), kItems), ~0u);
+  core::Image image;
+  int frame = 1000 * state.thread_index();
+  for (auto _ : state) {
+    rasterizer.render(wanderingCamera(frame++), image);
+    benchmark::DoNotOptimize(image.rgb.data());
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(render)->ArgName("objects")->Arg(4)->Arg(8)->Arg(12)->Threads(1)->Threads(2)->UseRealTime();
+
+/// The shadow map drawn anew, as at the begin of an episode and after COLLECT and REMOVE.
+void changeScene(benchmark::State& state) {
+  Rasterizer rasterizer(world(), kImageSize);
+  const std::vector<Instance> scene = handmadeScene(static_cast<int>(state.range(0)), kItems);
+  InstanceMask present = ~0u;
+  for (auto _ : state) rasterizer.setScene(scene, present ^= 1u);
+}
+BENCHMARK(changeScene)->ArgName("objects")->Arg(8);
+
+}  // namespace
+}  // namespace early_fusion::sim
+
+BENCHMARK_MAIN();
