@@ -13,8 +13,9 @@ usage() {
   cat <<EOF
 Usage: $(basename "$0") [--to FOLDER] [ID...]
 
-Downloads scans of the YCB object and model set (Calli et al. 2015, CC BY 4.0; http://www.ycbbenchmarks.com), about 10 MB
-each, and writes FOLDER/objects.yaml, an object set of those named. Scans that are already there are not downloaded again.
+Downloads scans of the YCB object and model set (Calli et al. 2015, CC BY 4.0; http://www.ycbbenchmarks.com), some
+megabytes each, and writes FOLDER/objects.yaml, an object set of those named. Scans that are already there are not
+downloaded again.
 
   ID           a scan such as 003_cracker_box; without any, the eighteen that config/ycb_objects.yaml lists
   --to FOLDER  where to put them [$folder]
@@ -38,7 +39,8 @@ download() {
   curl --fail --location --retry 3 --silent --show-error --output "$scratch/$id.tgz" "$url" ||
     fail "cannot download $url. Is '$id' the name of a scan, and is there a connection?"
   tar -xzf "$scratch/$id.tgz" -C "$scratch" || fail "$url is not a complete archive: try again"
-  [[ -f "$scratch/$id/google_16k/textured.obj" ]] || fail "$url has no $id/google_16k/textured.obj: this scan cannot be used"
+  [[ -f "$scratch/$id/google_16k/textured.obj" ]] ||
+    fail "$url has no $id/google_16k/textured.obj: this scan cannot be used"
   rm -rf "${folder:?}/$id"
   mv "$scratch/$id" "$folder/$id"
   rm "$scratch/$id.tgz"
