@@ -77,18 +77,22 @@ void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std
   for (int row = 0; row < shape.height / 2; ++row) {
     for (int c = 0; c < channels; c += kLanes) {
       const std::size_t start = std::size_t(row) * columns * channels + c;
+      // Where the mean is far from 0, sums of squares would leave little of the variance in float: sums are of what
+      // differs from a number amid the row.
+      const Lanes pivot = relu(borderWindow(shape, y, bias, row, columns / 2, c).value);
       Lanes sum{}, square_sum{};
       poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
         const std::size_t at = start + std::size_t(column) * channels;
         const Lanes positive = relu(best.value);
         storeLanes(z + at, positive);
-        const Lanes kept = rounded(positive, z + at);
-        sum += kept;
-        square_sum += kept * kept;
+        const Lanes off = rounded(positive, z + at) - pivot;
+        sum += off;
+        square_sum += off * off;
         storeBytes(choice + at, best.index);
       });
-      addTo(sums + c, sum);
-      addTo(sums + channels + c, square_sum);
+      const DoubleLanes pivots = toDoubles(pivot), sums_off = toDoubles(sum);
+      addTo(sums + c, sums_off + double(columns) * pivots);
+      addTo(sums + channels + c, toDoubles(square_sum) + 2.0 * pivots * sums_off + double(columns) * pivots * pivots);
     }
   }
 }

@@ -108,10 +108,14 @@ inline auto loadBytesAs(const std::uint8_t* from) {
   }
 }
 
-inline void addTo(double* sums, const Lanes& v) {
-  const DoubleLanes sum = loadVector<DoubleLanes>(sums) + __builtin_convertvector(v, DoubleLanes);
+inline DoubleLanes toDoubles(const Lanes& v) { return __builtin_convertvector(v, DoubleLanes); }
+
+inline void addTo(double* sums, const DoubleLanes& v) {
+  const DoubleLanes sum = loadVector<DoubleLanes>(sums) + v;
   std::memcpy(sums, &sum, sizeof sum);
 }
+
+inline void addTo(double* sums, const Lanes& v) { addTo(sums, toDoubles(v)); }
 
 #pragma GCC diagnostic pop
 

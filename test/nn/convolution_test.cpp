@@ -1,0 +1,65 @@
+#include "early_fusion/nn/convolution.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "reference_layers.h"
+
+namespace early_fusion::nn {
+namespace {
+
+/// height, width, in, out
+class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
+ protected:
+  ConvolutionTest() {
+    const auto [height, width, in, out] = GetParam();
+    shape = {in, out, height, width};
+    x = randomNumbers(std::size_t(height) * width * in, random);
+    weights = randomNumbers(std::size_t(out) * in * 9, random);
+  }
+
+  template <class T>
+  static AlignedBuffer<T> stored(const Numbers& numbers) {
+    AlignedBuffer<T> buffer(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) buffer[i] = fromFloat<T>(static_cast<float>(numbers[i]));
+    return buffer;
+  }
+
+  template <class T>
+  double forwardError() {
+    Convolution<T> convolution(shape, false, 2);
+    convolution.setWeights(stored<float>(weights).data());
+    const AlignedBuffer<T> in = stored<T>(x);
+    const Numbers expected =
+        naiveConvolution(x, weights, shape.height, shape.width, shape.in_channels, shape.out_channels);
+    AlignedBuffer<T> out(expected.size()), second(expected.size()), wide(expected.size());
+    convolution.forward(0, in.data(), out.data());
+    convolution.forward(1, in.data(), second.data());
+    convolution.forwardOnAllThreads(in.data(), wide.data());
+    EXPECT_EQ(std::memcmp(out.data(), second.data(), expected.size() * sizeof(T)), 0);
+    EXPECT_EQ(std::memcmp(out.data(), wide.data(), expected.size() * sizeof(T)), 0);
+    Numbers result;
+    for (std::size_t i = 0; i < expected.size(); ++i) result.push_back(toFloat(out[i]));
+    return worstError(result, expected);
+  }
+
+  core::Random random{31};
+  ConvolutionShape shape{};
+  Numbers x, weights;
+};
+
+TEST_P(ConvolutionTest, IsTheNaiveOneOnEveryThread) { EXPECT_LT(forwardError<float>(), 1e-5); }
+
+TEST_P(ConvolutionTest, InBfloat16IsCloseToTheNaiveOne) {
+  if (!processorHasBfloat16()) GTEST_SKIP() << "no native bfloat16 here";
+  EXPECT_LT(forwardError<bfloat16>(), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ConvolutionTest,
+                         testing::Values(std::array<int, 4>{128, 128, 9, 16}, std::array<int, 4>{6, 10, 16, 32},
+                                         std::array<int, 4>{2, 2, 64, 64}, std::array<int, 4>{64, 64, 16, 16},
+                                         std::array<int, 4>{32, 32, 32, 32}));
+
+}  // namespace
+}  // namespace early_fusion::nn

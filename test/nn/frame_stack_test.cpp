@@ -1,0 +1,38 @@
+#include "early_fusion/nn/frame_stack.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace early_fusion::nn {
+namespace {
+
+template <class T>
+class FrameStack : public testing::Test {};
+
+using Types = testing::Types<float, bfloat16>;
+TYPED_TEST_SUITE(FrameStack, Types);
+
+TYPED_TEST(FrameStack, LaysFramesSideBySideExactly) {
+  constexpr int kStored = kStoredImageChannels<TypeParam>;
+  for (int pixels : {1, 127, 128, 129, 1024}) {
+    std::vector<std::vector<std::uint8_t>> frames(kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
+    for (int f = 0; f < kStackedFrames; ++f) {
+      for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
+    }
+    const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
+    std::vector<TypeParam> x(pixels * kStored + 1, fromFloat<TypeParam>(-1.f));
+    stackFrames(with_black, pixels, x.data());
+    for (int p = 0; p < pixels; ++p) {
+      for (int c = 0; c < kStored; ++c) {
+        const bool black = c / 3 == 1 || c >= kImageChannels;
+        const float expected = black ? 0.f : frames[c / 3][3 * p + c % 3];
+        ASSERT_EQ(toFloat(x[p * kStored + c]), expected) << "pixel " << p << " of " << pixels << ", channel " << c;
+      }
+    }
+    EXPECT_EQ(toFloat(x.back()), -1.f) << "written past the end";
+  }
+}
+
+}  // namespace
+}  // namespace early_fusion::nn
