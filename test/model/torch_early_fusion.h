@@ -35,7 +35,8 @@ struct TorchEarlyFusion : torch::nn::Module {
     torch::Tensor x = images;
     for (int b = 0; b < 4; ++b) {
       if (b == options_.fusion_block) {
-        const torch::Tensor tiled = goal.unsqueeze(2).unsqueeze(3).expand({x.size(0), goal.size(1), x.size(2), x.size(3)});
+        const torch::Tensor tiled =
+            goal.unsqueeze(2).unsqueeze(3).expand({x.size(0), goal.size(1), x.size(2), x.size(3)});
         x = torch::cat({x, tiled}, 1);
       }
       x = norms_[b]->forward(torch::relu(torch::max_pool2d(convolutions_[b]->forward(x), 2)));

@@ -1,0 +1,57 @@
+#include "early_fusion/model/action_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::model {
+namespace {
+
+using Row = Eigen::Matrix<float, 1, core::kActionCount>;
+
+Row someProbabilities() {
+  Row row;
+  row << 0.1f, 0.2f, 0.05f, 0.3f, 0.25f, 0.1f, 0.f;
+  return row;
+}
+
+TEST(ActionChoice, ArgmaxTakesTheLikeliest) {
+  EXPECT_EQ(chooseAction(someProbabilities(), ActionChoice::kArgmax, 1, 2, 3), core::Action::kTiltDown);
+}
+
+TEST(ActionChoice, SamplesDrawEachActionAsOftenAsItsProbabilitySays) {
+  constexpr int kDraws = 20000;
+  std::array<int, core::kActionCount> counts{};
+  for (int i = 0; i < kDraws; ++i) {
+    ++counts[static_cast<int>(chooseAction(someProbabilities(), ActionChoice::kSample, 7, i / 48, i % 48))];
+  }
+  for (int k = 0; k < core::kActionCount; ++k) {
+    const double p = someProbabilities()[k];
+    EXPECT_NEAR(double(counts[k]) / kDraws, p, 4 * std::sqrt(p * (1 - p) / kDraws)) << "action " << k;
+  }
+}
+
+TEST(ActionChoice, ADrawIsDecidedBySeedEpisodeAndStep) {
+  int differences = 0;
+  for (std::uint32_t step = 0; step < 100; ++step) {
+    const auto draw = [&](std::uint64_t seed, std::uint64_t episode, std::uint32_t at) {
+      return chooseAction(someProbabilities(), ActionChoice::kSample, seed, episode, at);
+    };
+    EXPECT_EQ(draw(1, 2, step), draw(1, 2, step));
+    differences += draw(1, 2, step) != draw(2, 2, step);
+    differences += draw(1, 2, step) != draw(1, 3, step);
+    differences += draw(1, 2, step) != draw(1, 2, step + 100);
+  }
+  EXPECT_GT(differences, 150);
+}
+
+TEST(ActionChoice, NamesItsWays) {
+  EXPECT_EQ(actionChoiceFromName("argmax"), ActionChoice::kArgmax);
+  EXPECT_EQ(actionChoiceFromName("sample"), ActionChoice::kSample);
+  EXPECT_THROW(actionChoiceFromName("greedy"), core::Error);
+}
+
+}  // namespace
+}  // namespace early_fusion::model
