@@ -1,1 +1,5 @@
 early_fusion_add_test(sim shipped_meshes_test early_fusion_make_meshes)
+early_fusion_add_test(sim textured_mesh_test ${OpenCV_LIBS})
+early_fusion_add_test(sim rasterizer_test)
+early_fusion_add_test(sim triangle_fill_test)
+target_include_directories(sim_triangle_fill_test PRIVATE ${PROJECT_SOURCE_DIR}/src/sim)
