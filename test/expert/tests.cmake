@@ -1,0 +1,1 @@
+early_fusion_add_test(expert greedy_expert_test)

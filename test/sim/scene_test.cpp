@@ -1,0 +1,123 @@
+#include "early_fusion/sim/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "early_fusion/sim/placed_hull.h"
+#include "test_world.h"
+
+namespace early_fusion::sim {
+namespace {
+
+const World& world() {
+  static const std::shared_ptr<const World> world = testWorld();
+  return *world;
+}
+
+Task makeTask(int instances, int requested) {
+  Task task;
+  task.instances = instances;
+  task.requested = requested;
+  return task;
+}
+
+TEST(Scene, StandsAnInstanceOnTheCounterTurnedAboutZ) {
+  const Eigen::Isometry3d pose = worldFromObject(world(), {0, 0.7, -0.2, M_PI / 2});
+  EXPECT_TRUE((pose * Eigen::Vector3d(0.1, 0, 0.05)).isApprox(Eigen::Vector3d(0.7, -0.1, 0.95), 1e-9));
+}
+
+TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
+  const PlacementArea& area = world().placement;
+  for (std::uint64_t episode = 0; episode < 100; ++episode) {
+    const EpisodeSetup setup = sampleEpisode(world(), makeTask(10, 3), 1, episode);
+    ASSERT_EQ(setup.instances.size(), 10u);
+    std::vector<PlacedHull> hulls;
+    for (const Instance& instance : setup.instances) {
+      EXPECT_TRUE(instance.x >= area.min_x && instance.x <= area.max_x && instance.y >= area.min_y &&
+                  instance.y <= area.max_y);
+      hulls.emplace_back(world().objects[instance.item].hull, worldFromObject(world(), instance));
+      for (std::size_t other = 0; other + 1 < hulls.size(); ++other) {
+        EXPECT_GE(hulls.back().distanceTo(hulls[other]), world().options.clearance);
+      }
+    }
+  }
+}
+
+TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
+  std::set<int> items, pans, tilts;
+  bool repeated = false;
+  double least_theta = 10, most_theta = -10;
+  for (std::uint64_t episode = 0; episode < 400; ++episode) {
+    const EpisodeSetup setup = sampleEpisode(world(), makeTask(4, 1), 2, episode);
+    std::set<int> here;
+    for (const Instance& instance : setup.instances) {
+      here.insert(instance.item);
+      least_theta = std::min(least_theta, instance.theta);
+      most_theta = std::max(most_theta, instance.theta);
+    }
+    items.insert(here.begin(), here.end());
+    repeated |= here.size() < 4;
+    EXPECT_TRUE(world().rig.lattice().contains(setup.orientation));
+    pans.insert(setup.orientation.pan);
+    tilts.insert(setup.orientation.tilt);
+  }
+  EXPECT_EQ(items.size(), 4u);
+  EXPECT_TRUE(repeated);
+  EXPECT_EQ(static_cast<int>(pans.size()), world().rig.lattice().panCount());
+  EXPECT_EQ(static_cast<int>(tilts.size()), world().rig.lattice().tiltCount());
+  EXPECT_LT(least_theta, -3.1);
+  EXPECT_GT(most_theta, 3.1);
+}
+
+TEST(Scene, RequestsASubsetOfTheInstances) {
+  bool twice = false;
+  for (std::uint64_t episode = 0; episode < 200; ++episode) {
+    const EpisodeSetup setup = sampleEpisode(world(), makeTask(6, 3), 3, episode);
+    ASSERT_EQ(setup.request.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(setup.request.begin(), setup.request.end()));
+    for (int item : setup.request) {
+      const auto requested = std::count(setup.request.begin(), setup.request.end(), item);
+      EXPECT_LE(requested, std::count_if(setup.instances.begin(), setup.instances.end(),
+                                         [&](const Instance& instance) { return instance.item == item; }));
+      twice |= requested > 1;
+    }
+  }
+  EXPECT_TRUE(twice);
+}
+
+TEST(Scene, IsTheSameForTheSameSeedAndEpisodeOnly) {
+  const auto first_x = [](std::uint64_t seed, std::uint64_t episode) {
+    return sampleEpisode(world(), makeTask(4, 1), seed, episode).instances[0].x;
+  };
+  const EpisodeSetup a = sampleEpisode(world(), makeTask(4, 1), 5, 6);
+  const EpisodeSetup b = sampleEpisode(world(), makeTask(4, 1), 5, 6);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(a.instances[i].item, b.instances[i].item);
+    EXPECT_EQ(a.instances[i].x, b.instances[i].x);
+    EXPECT_EQ(a.instances[i].y, b.instances[i].y);
+    EXPECT_EQ(a.instances[i].theta, b.instances[i].theta);
+  }
+  EXPECT_EQ(a.request, b.request);
+  EXPECT_EQ(a.orientation, b.orientation);
+  EXPECT_NE(first_x(5, 6), first_x(5, 7));
+  EXPECT_NE(first_x(5, 6), first_x(6, 6));
+}
+
+TEST(Scene, SaysHowManyFittedOnATooSmallCounter) {
+  World small = world();
+  small.options.placement_width = 0.3;
+  small.options.placement_depth = 0.3;
+  small.placement = {0.6, 0.9, -0.15, 0.15, 0.9};
+  const std::string error = errorOf([&] { sampleEpisode(small, makeTask(30, 1), 1, 1); });
+  EXPECT_NE(error.find("of the 30 instances of task 'custom' fit on the 0.3 x 0.3 m"), std::string::npos) << error;
+  EXPECT_EQ(error.find("only 0 of"), std::string::npos) << error;
+}
+
+TEST(Scene, RefusesATaskThatAsksForTooMany) {
+  EXPECT_NE(errorOf([] { sampleEpisode(world(), makeTask(2, 3), 1, 1); }).find("requested is 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace early_fusion::sim

@@ -1,0 +1,64 @@
+#include "early_fusion/sim/task.h"
+
+#include <gtest/gtest.h>
+
+#include "test_world.h"
+
+namespace early_fusion::sim {
+namespace {
+
+std::string errorOfTask(const std::string& yaml) {
+  const TestFolder folder;
+  const std::string file = folder.write("mine.yaml", yaml);
+  return errorOf([&] { loadTask(file); });
+}
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+struct Expected {
+  const char* name;
+  int instances, requested;
+};
+
+class ShippedTask : public testing::TestWithParam<Expected> {};
+
+TEST_P(ShippedTask, IsThePapers) {
+  const Task task = loadTask(GetParam().name);
+  EXPECT_EQ(task.name, GetParam().name);
+  EXPECT_EQ(task.instances, GetParam().instances);
+  EXPECT_EQ(task.requested, GetParam().requested);
+  EXPECT_EQ(task.steps, 48);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllThree, ShippedTask,
+                         testing::Values(Expected{"simple", 4, 1}, Expected{"medium", 8, 2}, Expected{"hard", 12, 3}),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
+  const TestFolder folder;
+  EXPECT_EQ(loadTask(folder.write("crowded.yaml", "instances: 20\n")).name, "crowded");
+  EXPECT_EQ(loadTask(folder.write("crowded.yaml", "name: full\ninstances: 20\n")).name, "full");
+}
+
+TEST(Task, ListsTheKnownOnesForAnUnknownName) {
+  const std::string error = errorOf([] { loadTask("harder"); });
+  EXPECT_TRUE(mentions(error, "unknown task 'harder'; known are hard, medium, simple")) << error;
+  EXPECT_TRUE(mentions(errorOf([] { loadTask(""); }), "unknown task ''"));
+}
+
+TEST(Task, NamesFileKeyAndValueOfAMistake) {
+  EXPECT_TRUE(mentions(errorOf([] { loadTask("/no/such.yaml"); }), "/no/such.yaml"));
+  const std::string many = errorOfTask("instances: 33\n");
+  EXPECT_TRUE(mentions(many, "mine.yaml") && mentions(many, "instances") && mentions(many, "33")) << many;
+  EXPECT_TRUE(mentions(errorOfTask("steps: 0\n"), "steps"));
+  EXPECT_TRUE(mentions(errorOfTask("object: 4\n"), "object"));
+  EXPECT_TRUE(mentions(errorOfTask("instances: [4\n"), "mine.yaml"));
+}
+
+TEST(Task, CannotRequestMoreThanThereIs) {
+  const std::string error = errorOfTask("instances: 2\nrequested: 3\n");
+  EXPECT_TRUE(mentions(error, "mine.yaml: requested is 3; it must be at most instances, 2")) << error;
+}
+
+}  // namespace
+}  // namespace early_fusion::sim
