@@ -54,7 +54,7 @@ class Trainer {
   /// The trajectory of episode number trajectoriesSeen(): they must come in order.
   void add(Trajectory trajectory);
 
-  bool roundDue() const { return new_trajectories_ >= newInRound(); }
+  bool roundDue() const { return new_trajectories_ > 0 && new_trajectories_ >= newInRound(); }
   bool finished() const {
     return trajectoriesSeen() >= static_cast<std::uint64_t>(options_.trajectories) && !roundDue();
   }
