@@ -37,6 +37,7 @@ int runNode(int argc, char** argv, const std::string& name, core::OptionSet opti
   }
   try {
     ::ros::init(argc, argv, name);
+    ::ros::start();  // or else the console would end with the node's last handle, and with it the reason of a failure
     loadParameters(options);
     run();
     return 0;
