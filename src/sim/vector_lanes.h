@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -106,23 +107,29 @@ namespace detail {
 
 using Four __attribute__((vector_size(16))) = float;
 using Eight __attribute__((vector_size(32))) = float;
+template <class Half>
+auto joined(Half a, Half b) {
+  if constexpr (sizeof(Half) == sizeof(Four)) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  } else {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+}
 
 /// kLanes numbers from the records laid end to end, from number `first` on.
 template <int N>
 FloatLanes laidEndToEnd(const float* base, const std::int32_t* offset, int first) {
   const auto record = [=](int after) { return base + offset[first / N + after] + first % N; };
+  const auto four = [=](int after) { return loadLanes<Four>(record(after)); };
   if constexpr (kLanes <= N) {
     return loadLanes<FloatLanes>(record(0));
-  } else if constexpr (kLanes == 8) {
-    return __builtin_shufflevector(loadLanes<Four>(record(0)), loadLanes<Four>(record(1)), 0, 1, 2, 3, 4, 5, 6, 7);
+  } else if constexpr (2 * N == kLanes) {
+    using Record = std::conditional_t<N == 4, Four, Eight>;
+    const auto both = joined(loadLanes<Record>(record(0)), loadLanes<Record>(record(1)));
+    return loadLanes<FloatLanes>(&both);
   } else {
-    Eight half[2];
-    for (int i = 0; i < 2; ++i) {
-      half[i] = N == 8 ? loadLanes<Eight>(record(i))
-                       : __builtin_shufflevector(loadLanes<Four>(record(2 * i)), loadLanes<Four>(record(2 * i + 1)), 0,
-                                                 1, 2, 3, 4, 5, 6, 7);
-    }
-    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const auto all = joined(joined(four(0), four(1)), joined(four(2), four(3)));
+    return loadLanes<FloatLanes>(&all);
   }
 }
 
