@@ -7,6 +7,8 @@
 
 #include "early_fusion/core/random.h"
 
+#pragma GCC diagnostic ignored "-Wpsabi"  // see lanes.h
+
 namespace early_fusion::nn {
 namespace {
 
