@@ -21,6 +21,7 @@ core::OptionSet TrainingOptions::options() {
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
   set.add("relabel_share", relabel_share, 0, 1, "", "share of samples whose frame is labelled for another request");
+  set.add("idle_relabel_share", idle_relabel_share, 0, 1, "", "the same where nothing is left to request");
   set.add("soft_labels", soft_labels, "learn all of the expert's optimal actions instead of the first of them");
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
   set.addChoice("exploration", exploration, {"argmax", "sample"}, "how rollouts choose among the probabilities");
@@ -91,8 +92,8 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
   double total = 0;
   for (const Trajectory& trajectory : window_) {
     for (const TrajectoryStep& step : trajectory.steps) {
-      counts[static_cast<int>(step.label.action)] += 1 - options_.relabel_share;
-      counts[static_cast<int>(step.relabel.action)] += options_.relabel_share;
+      counts[static_cast<int>(step.label.action)] += 1 - relabelShare(step);
+      counts[static_cast<int>(step.relabel.action)] += relabelShare(step);
       total += 1;
     }
   }
@@ -103,10 +104,14 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
   return weights;
 }
 
+double Trainer::relabelShare(const TrajectoryStep& step) const {
+  return step.label.request.empty() ? options_.idle_relabel_share : options_.relabel_share;
+}
+
 model::Sample Trainer::sample(FrameIndex index, core::Random& random) const {
   const Trajectory& trajectory = window_[index.trajectory];
   const TrajectoryStep& step = trajectory.steps[index.step];
-  const Label& label = random.uniform() < options_.relabel_share ? step.relabel : step.label;
+  const Label& label = random.uniform() < relabelShare(step) ? step.relabel : step.label;
   model::Sample sample;
   for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
     sample.observation.frames[age] = trajectory.steps[index.step - age].frame.data();

@@ -1,6 +1,7 @@
 #include "early_fusion/learning/trajectory.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "early_fusion/core/random.h"
 
@@ -42,11 +43,13 @@ Label TrajectoryRecorder::label(const sim::EpisodeState& state, const core::Requ
   return label;
 }
 
-/// A request that this scene could have had: 1 to requested_ of the instances that are left.
+/// A request that this scene could have had: 1 to requested_ of the instances in the picture. What the picture does not
+/// show is left out, for there the right move depends on where the policy came from, and it came for something else.
 core::Request TrajectoryRecorder::drawRequest(const sim::EpisodeState& state) {
   std::vector<int> items;
   for (std::size_t i = 0; i < instances_.size(); ++i) {
-    if ((state.present >> i) & 1) items.push_back(instances_[i].item);
+    if (((state.present >> i) & 1) && isNear(static_cast<int>(i), state.orientation))
+      items.push_back(instances_[i].item);
   }
   if (items.empty() || requested_ == 0) return state.request;
   core::Random random(seed_, {core::kRelabelStream, trajectory_.episode, static_cast<std::uint64_t>(state.step)});
@@ -54,6 +57,14 @@ core::Request TrajectoryRecorder::drawRequest(const sim::EpisodeState& state) {
   items.resize(std::min<std::size_t>(items.size(), 1 + random.below(requested_)));
   std::sort(items.begin(), items.end());
   return items;
+}
+
+bool TrajectoryRecorder::isNear(int instance, sim::Orientation orientation) const {
+  constexpr int kSteps = 13;  // 26 degrees: well inside a picture of 60
+  const std::vector<sim::Orientation>& orientations = cone_->orientationsOf(instance);
+  return std::any_of(orientations.begin(), orientations.end(), [&](sim::Orientation other) {
+    return std::abs(other.pan - orientation.pan) <= kSteps && std::abs(other.tilt - orientation.tilt) <= kSteps;
+  });
 }
 
 }  // namespace early_fusion::learning

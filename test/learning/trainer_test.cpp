@@ -121,6 +121,23 @@ TEST(Trainer, RelabelledSamplesTeachTheOtherRequestsLabel) {
   EXPECT_LT(last, 0.5);
 }
 
+TEST(Trainer, FramesWithNothingToRequestAreRelabelledByTheirOwnShare) {
+  TrainingOptions options = tinyTraining();
+  options.relabel_share = 0;
+  options.idle_relabel_share = 1;  // every relabel is IDLE; every label is another action
+  const auto trainer = makeTrainer(options);
+  double last = 0;
+  while (!trainer->finished()) {
+    while (!trainer->roundDue()) {
+      Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
+      for (TrajectoryStep& step : trajectory.steps) step.label.request.clear();
+      trainer->add(std::move(trajectory));
+    }
+    last = trainer->trainRound().loss;
+  }
+  EXPECT_LT(last, 0.5);
+}
+
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {
   const auto trainer = makeTrainer();
   nn::WeightsFile file = trainer->save();

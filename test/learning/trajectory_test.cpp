@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "shipped_world.h"
 
@@ -48,7 +49,6 @@ TEST_F(TrajectoryRecorderTest, EveryRelabelAsksForWhatIsThereAndHasTheExpertsLab
   for (const TrajectoryStep& step : trajectory.steps) {
     const sim::EpisodeState& state = episode.state();
     const core::Request& request = step.relabel.request;
-    EXPECT_GE(request.size(), 1u);
     EXPECT_LE(request.size(), 3u);
     EXPECT_TRUE(std::is_sorted(request.begin(), request.end()));
     for (int item : request) {
@@ -66,6 +66,30 @@ TEST_F(TrajectoryRecorderTest, EveryRelabelAsksForWhatIsThereAndHasTheExpertsLab
   EXPECT_GT(differing, 5);
 }
 
+// Asking for what the picture does not show would teach the policy to search where its own search had ended.
+TEST_F(TrajectoryRecorderTest, RelabelsAskOnlyForWhatIsInThePicture) {
+  const Trajectory trajectory = recordAll(1);
+  sim::Episode episode = episode_;
+  const double fov_rad = shippedWorld().options.horizontal_fov_deg * M_PI / 180;
+  for (const TrajectoryStep& step : trajectory.steps) {
+    const sim::EpisodeState& state = episode.state();
+    if (step.relabel.request != step.label.request) {
+      for (int item : step.relabel.request) {
+        bool seen = false;
+        for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
+          if (!((state.present >> i) & 1) || episode.setup().instances[i].item != item) continue;
+          const Eigen::Vector3d from_camera =
+              shippedWorld().rig.worldFromCamera(state.orientation).inverse() *
+              sim::worldFromObject(shippedWorld(), episode.setup().instances[i]).translation();
+          seen |= std::abs(std::atan2(from_camera.x(), from_camera.z())) < 0.6 * fov_rad;
+        }
+        EXPECT_TRUE(seen) << "step " << state.step;
+      }
+    }
+    episode.step(step.action);
+  }
+}
+
 TEST_F(TrajectoryRecorderTest, RelabelsDependOnSeedEpisodeAndStepAlone) {
   const Trajectory a = recordAll(1), b = recordAll(1), c = recordAll(2);
   int differing = 0;
@@ -73,7 +97,7 @@ TEST_F(TrajectoryRecorderTest, RelabelsDependOnSeedEpisodeAndStepAlone) {
     EXPECT_EQ(a.steps[s].relabel.request, b.steps[s].relabel.request);
     differing += a.steps[s].relabel.request != c.steps[s].relabel.request;
   }
-  EXPECT_GT(differing, 20);
+  EXPECT_GT(differing, 10);
 }
 
 TEST_F(TrajectoryRecorderTest, KeepsScoreFramesAndEpisode) {

@@ -24,6 +24,7 @@ struct TrainingOptions {
   double learning_rate = 1e-4;         ///< at the session's start
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
   double relabel_share = 0;            ///< share of samples whose frame is labelled for another request
+  double idle_relabel_share = 0;       ///< the same where nothing is left to request, and the label IDLE teaches little
   bool soft_labels = false;            ///< learn all of the expert's optimal actions, not the first of them
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
   std::string exploration = "sample";  ///< how rollouts choose actions: argmax or sample
@@ -94,6 +95,7 @@ class Trainer {
   int newInRound() const;
   double learningRate() const;
   std::vector<FrameIndex> drawFrames() const;
+  double relabelShare(const TrajectoryStep& step) const;
   model::Sample sample(FrameIndex index, core::Random& random) const;
   std::array<float, core::kActionCount> actionWeights() const;
   RoundStatistics rolloutStatistics() const;

@@ -58,6 +58,7 @@ class TrajectoryRecorder {
  private:
   Label label(const sim::EpisodeState& state, const core::Request& request) const;
   core::Request drawRequest(const sim::EpisodeState& state);
+  bool isNear(int instance, sim::Orientation orientation) const;
 
   std::uint64_t seed_;
   std::vector<sim::Instance> instances_;
