@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/file.h"
+#include "early_fusion/expert/greedy_expert.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {
@@ -47,12 +48,7 @@ TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {
 }
 
 TEST_F(MarkersTest, LeaveOutWhatWasTakenAway) {
-  while (!episode_.finished()) {
-    // Sweeps until something has been taken away.
-    episode_.step(episode_.cone().nearest(episode_.state().orientation, episode_.state().present) >= 0
-                      ? core::Action::kRemove
-                      : core::Action::kPanLeft);
-  }
+  while (!episode_.finished()) episode_.step(expert::decide(episode_).action);
   const int left = __builtin_popcount(episode_.state().present);
   ASSERT_LT(left, task_.instances);
   EXPECT_EQ(count(objectMarkers(*world_, episode_, {}), "objects"), left);

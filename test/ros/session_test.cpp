@@ -68,8 +68,10 @@ class SessionTest : public testing::Test {
                     {"ROS_IP", "127.0.0.1"},
                     {"ROS_HOME", files_->path("ros_home")},
                     {"ROS_LOG_DIR", files_->path("ros_home/log")},
+                    {"PYTHONUNBUFFERED", "1"},
                     {"EARLY_FUSION_SHARE", core::shareFolder()}};
-    master_.emplace(std::vector<std::string>{"roscore", "-p", port}, environment_, files_->path("roscore.log"));
+    const std::string log = files_->path("roscore" + port + ".log");
+    master_.emplace(std::vector<std::string>{"roscore", "-p", port}, environment_, log);
     waitFor([&] { return master_->output().find("started core service [/rosout]") != std::string::npos; });
   }
 
