@@ -1,1 +1,2 @@
+early_fusion_add_test(expert ceiling_test)
 early_fusion_add_test(expert greedy_expert_test)
