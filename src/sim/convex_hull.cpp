@@ -9,52 +9,65 @@ namespace {
 
 constexpr int kDirections = 4000;
 
-/// The axes, then a Fibonacci spiral: directions spread evenly over the sphere, one per row.
-Eigen::MatrixX3d directionsAllAround() {
-  Eigen::MatrixX3d directions(6 + kDirections, 3);
-  directions.topRows<3>().setIdentity();
-  directions.middleRows<3>(3) = -Eigen::Matrix3d::Identity();
+/// The axes, then a Fibonacci spiral: directions spread evenly over the sphere.
+std::vector<Eigen::Vector3d> directionsAllAround() {
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(6 + kDirections);
+  for (int i = 0; i < 6; ++i) directions.push_back((i < 3 ? 1 : -1) * Eigen::Vector3d::Unit(i % 3));
   const double golden_angle = M_PI * (3.0 - std::sqrt(5.0));
   for (int i = 0; i < kDirections; ++i) {
     const double z = 1.0 - (2.0 * i + 1.0) / kDirections;
     const double radius = std::sqrt(1.0 - z * z);
-    directions.row(6 + i) << radius * std::cos(golden_angle * i), radius * std::sin(golden_angle * i), z;
+    directions.emplace_back(radius * std::cos(golden_angle * i), radius * std::sin(golden_angle * i), z);
   }
   return directions;
+}
+
+/// How far points reach along one direction.
+struct Support {
+  Eigen::Vector3d direction;
+  double reach = -HUGE_VAL;    ///< of all points
+  double reached = -HUGE_VAL;  ///< of the corners chosen so far
+  const Eigen::Vector3d* farthest = nullptr;
+
+  double shortfall() const { return reach - reached; }
+};
+
+std::vector<Support> supportsOf(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<Support> supports;
+  for (const Eigen::Vector3d& direction : directionsAllAround()) {
+    Support support;
+    support.direction = direction;
+    for (const Eigen::Vector3d& point : points) {
+      const double along = direction.dot(point);
+      if (along <= support.reach) continue;
+      support.reach = along;
+      support.farthest = &point;
+    }
+    supports.push_back(support);
+  }
+  return supports;
 }
 
 }  // namespace
 
 std::vector<Eigen::Vector3d> convexHullCorners(const std::vector<Eigen::Vector3d>& points, int max_corners,
                                                double tolerance) {
-  const Eigen::MatrixX3d directions = directionsAllAround();
-  const Eigen::Index count = directions.rows();
-  Eigen::VectorXd reach = Eigen::VectorXd::Constant(count, -HUGE_VAL);  // of all points, along each direction
-  Eigen::VectorXi farthest = Eigen::VectorXi::Zero(count);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::VectorXd along = directions * points[i];
-    for (Eigen::Index d = 0; d < count; ++d) {
-      if (along[d] <= reach[d]) continue;
-      reach[d] = along[d];
-      farthest[d] = static_cast<int>(i);
-    }
-  }
-  std::vector<int> chosen;
-  Eigen::VectorXd reached = Eigen::VectorXd::Constant(count, -HUGE_VAL);  // by the chosen corners
-  const auto choose = [&](Eigen::Index direction) {
-    chosen.push_back(farthest[direction]);
-    reached = reached.cwiseMax(directions * points[chosen.back()]);
+  std::vector<Support> supports = supportsOf(points);
+  std::vector<Eigen::Vector3d> corners;
+  const auto choose = [&](const Support& support) {
+    corners.push_back(*support.farthest);
+    for (Support& other : supports) other.reached = std::max(other.reached, other.direction.dot(corners.back()));
   };
   for (int axis = 0; axis < 6; ++axis) {
-    if (reach[axis] > reached[axis]) choose(axis);
+    if (supports[axis].shortfall() > 0) choose(supports[axis]);
   }
-  while (static_cast<int>(chosen.size()) < max_corners) {
-    Eigen::Index worst = 0;
-    if ((reach - reached).maxCoeff(&worst) < tolerance) break;
-    choose(worst);
+  const auto less = [](const Support& a, const Support& b) { return a.shortfall() < b.shortfall(); };
+  while (static_cast<int>(corners.size()) < max_corners) {
+    const auto worst = std::max_element(supports.begin(), supports.end(), less);
+    if (worst->shortfall() < tolerance) break;
+    choose(*worst);
   }
-  std::vector<Eigen::Vector3d> corners;
-  for (int i : chosen) corners.push_back(points[i]);
   return corners;
 }
 

@@ -31,7 +31,7 @@ struct EpisodeSetup {
 
 Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance);
 
-/// Draws types, collision-free poses, the request and the first orientation.
+/// Draws types, collision-free poses, the request and the first orientation, each uniformly.
 /// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
 EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random);
 
