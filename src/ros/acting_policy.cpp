@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cstdlib>
 
+#include "early_fusion/model/saliency.h"
+
 namespace early_fusion::nodes {
 
 namespace {
@@ -27,6 +29,13 @@ double ActingPolicy::horizontalFovDeg() const {
   return fov_deg > 0 && fov_deg < 180 ? fov_deg : kDefaultFovDeg;
 }
 
+model::Observation ActingPolicy::observation() const {
+  model::Observation observation;
+  observation.request = &request_;
+  for (std::size_t age = 0; age < frames_.size(); ++age) observation.frames[age] = frames_[age].rgb.data();
+  return observation;
+}
+
 void ActingPolicy::remember(const core::Image& frame, std::uint64_t episode, std::uint32_t step) {
   const bool again = episode == episode_ && step == step_ && !frames_.empty();
   const bool follows = episode == episode_ && step == step_ + 1;
@@ -44,17 +53,21 @@ void ActingPolicy::remember(const core::Image& frame, std::uint64_t episode, std
 Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                               std::uint32_t step) {
   assert(loaded() && frame.width == imageSize() && frame.height == imageSize());
-  const core::Request request = policy_->vocabulary().request(items);
+  request_ = policy_->vocabulary().request(items);
   remember(frame, episode, step);
-  model::Observation observation;
-  observation.request = &request;
-  for (std::size_t age = 0; age < frames_.size(); ++age) observation.frames[age] = frames_[age].rgb.data();
-  policy_->predict({observation}, probabilities_);
+  policy_->predict({observation()}, probabilities_);
   Decision decision;
   decision.action = model::chooseAction(probabilities_.row(0), choice_, acting_.seed, episode, step);
   decision.probabilities.assign(probabilities_.data(), probabilities_.data() + core::kActionCount);
   decision.frames = static_cast<int>(frames_.size());
   return decision;
+}
+
+core::Image ActingPolicy::lastImageWithSaliency(int grid) {
+  assert(!frames_.empty());
+  core::Image image = frames_.front();
+  model::tint(image, model::occlusionSaliency(*policy_, observation(), grid));
+  return image;
 }
 
 }  // namespace early_fusion::nodes

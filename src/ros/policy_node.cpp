@@ -30,6 +30,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");
+  set.add("saliency_grid", saliency_grid, 0, 64, "cells",
+          "along an edge of the saliency map that tints the annotated image; costs its square in predictions; 0: none");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -169,7 +171,9 @@ void PolicyNode::publishAnnotated(const core::Image& frame, const std_msgs::Head
       model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, frame.width);
   annotation.request = request.items;
   annotation.action = answer_.name;
-  annotated_publisher_.publish(imageMessage(model::annotate(frame, annotation, options_.annotated_scale), header));
+  const core::Image picture =
+      options_.saliency_grid > 0 ? policy_.lastImageWithSaliency(options_.saliency_grid) : frame;
+  annotated_publisher_.publish(imageMessage(model::annotate(picture, annotation, options_.annotated_scale), header));
 }
 
 void PolicyNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

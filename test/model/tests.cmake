@@ -1,5 +1,6 @@
 early_fusion_add_test(model action_choice_test)
 early_fusion_add_test(model goal_policy_test)
+early_fusion_add_test(model saliency_test)
 
 # The second implementation that the network is checked against.
 find_package(Torch QUIET)

@@ -114,6 +114,20 @@ TEST_F(ActingPolicyTest, UnusableWeightsLeaveTheOldOnesActing) {
   EXPECT_EQ(acting_.decide(a, {"mug"}, 7, 0).probabilities, expected({a}, {1}));
 }
 
+TEST_F(ActingPolicyTest, ShowsTheLastImageTinted) {
+  acting_.decide(frame(1), {"mug"}, 7, 0);
+  acting_.decide(frame(2), {"mug"}, 7, 1);
+  const core::Image plain = frame(2), tinted = acting_.lastImageWithSaliency(4);
+  ASSERT_EQ(tinted.rgb.size(), plain.rgb.size());
+  int redder = 0;
+  for (std::size_t i = 0; i < plain.rgb.size(); i += 3) {
+    EXPECT_GE(tinted.rgb[i], plain.rgb[i]);
+    EXPECT_LE(tinted.rgb[i + 1], plain.rgb[i + 1]);
+    redder += tinted.rgb[i] > plain.rgb[i];
+  }
+  EXPECT_GT(redder, 0);
+}
+
 TEST_F(ActingPolicyTest, TellsTheFieldOfViewOfItsWeights) {
   EXPECT_DOUBLE_EQ(acting_.horizontalFovDeg(), 45);
   acting_.load(model::savePolicy(*policy_, {}), "test", {});

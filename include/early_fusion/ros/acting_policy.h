@@ -50,7 +50,11 @@ class ActingPolicy {
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);
 
+  /// The image decided about last, tinted where the decision hangs on it; see model::occlusionSaliency().
+  core::Image lastImageWithSaliency(int grid);
+
  private:
+  model::Observation observation() const;
   void remember(const core::Image& frame, std::uint64_t episode, std::uint32_t step);
 
   nn::WeightsFile file_;
@@ -58,6 +62,7 @@ class ActingPolicy {
   Acting acting_;
   model::ActionChoice choice_ = model::ActionChoice::kArgmax;
   std::deque<core::Image> frames_;  // the newest first
+  core::Request request_;
   std::uint64_t episode_ = 0;
   std::uint32_t step_ = 0;
   model::Probabilities probabilities_;

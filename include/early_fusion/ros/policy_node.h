@@ -30,6 +30,7 @@ class PolicyNode {
     std::string image_transport = "raw";
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
+    int saliency_grid = 0;  ///< 0: no saliency on the annotated image
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
