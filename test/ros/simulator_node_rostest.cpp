@@ -14,6 +14,7 @@
 
 #include "early_fusion/ros/conversions.h"
 #include "early_fusion/ros/topics.h"
+#include "early_fusion/sim/rasterizer.h"
 #include "small_session.h"
 #include "spin_until.h"
 
