@@ -1,6 +1,6 @@
 catkin_add_gtest(cli_command_line_test cli/command_line_test.cpp TIMEOUT 600)
-target_link_libraries(cli_command_line_test early_fusion_learning nlohmann_json::nlohmann_json opencv_core
+target_link_libraries(cli_command_line_test ${PROJECT_NAME}_learning nlohmann_json::nlohmann_json opencv_core
   opencv_imgcodecs gtest_main)
-target_compile_definitions(cli_command_line_test PRIVATE EARLY_FUSION_PROGRAM="$<TARGET_FILE:early_fusion_cli>")
-add_dependencies(cli_command_line_test early_fusion_cli)
+target_compile_definitions(cli_command_line_test PRIVATE EARLY_FUSION_PROGRAM="$<TARGET_FILE:${PROJECT_NAME}_cli>")
+add_dependencies(cli_command_line_test ${PROJECT_NAME}_cli)
 add_dependencies(build_tests cli_command_line_test)
