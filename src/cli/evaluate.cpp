@@ -1,4 +1,5 @@
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "command.h"
@@ -26,10 +27,10 @@ void evaluate(const EvaluateOptions& options) {
   const sim::Task task = sim::loadTask(options.task);
   NamedAgent named = makeNamedAgent(options.policy, options.exploration, options.seed, *world);
   learning::RolloutRunner runner(*world, task, options.seed);
-  std::string trace;
+  std::map<std::uint64_t, std::string> traces;  // by episode: several are played at a time
   if (!options.trace.empty()) {
     runner.setObserver([&](std::uint64_t episode, const sim::Episode& before, const learning::TrajectoryStep& step) {
-      trace += learning::traceLine(*world, episode, before, step.action);
+      traces[episode] += learning::traceLine(*world, episode, before, step.action);
     });
   }
   const learning::Evaluation evaluation =
@@ -37,6 +38,8 @@ void evaluate(const EvaluateOptions& options) {
         if (onTerminal()) std::cerr << "\r" << done << "/" << options.episodes << " episodes" << std::flush;
       });
   if (onTerminal()) std::cerr << "\n";
+  std::string trace;
+  for (const auto& [episode, lines] : traces) trace += lines;
   if (!options.trace.empty()) writeTo(options.trace, trace);
   if (!options.json.empty()) writeTo(options.json, evaluation.toJson());
   (options.json == "-" || options.trace == "-" ? std::cerr : std::cout)

@@ -47,7 +47,8 @@ TEST(Trace, TheExpertsTraceObeysTheRules) {
       if (now["action"] != "REMOVE") EXPECT_DOUBLE_EQ(moved, 2.0);
     }
   }
-  EXPECT_EQ(collected, 2);
+  EXPECT_GE(collected, 1);
+  EXPECT_EQ(collected + lines.back()["request"].size(), 2u);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ model::PolicyOptions tinyPolicy() {
   model::PolicyOptions options;
   options.image_size = kTinySize;
   options.precision = "f32";
+  options.dropout = 0.1;
   return options;
 }
 
@@ -71,7 +72,7 @@ TEST(Trainer, TheWindowKeepsTheMostRecentTrajectories) {
 
 TEST(Trainer, LearnsLabelsThatTheFramesShow) {
   TrainingOptions options = tinyTraining();
-  options.trajectories = 160;
+  options.trajectories = 400;
   options.relabel_share = 0;
   const auto trainer = makeTrainer(options);
   const double first = runRound(*trainer).loss;
