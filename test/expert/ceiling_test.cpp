@@ -89,8 +89,8 @@ TEST_P(ShippedWorld, IsAsWideAndClutteredAsTheExpertCanManage) {
             << static_cast<double>(statistics.removed) / kEpisodes << "\n";
 }
 
-// With HARD's share of IDLE at 0.25, the expert misses its least F1 on SIMPLE or MEDIUM: see docs/design.md. Over 10,000
-// episodes HARD's share is 0.32; these 1,000 give 0.34, two standard errors more.
+// With HARD's share of IDLE at 0.25, the expert misses its least F1 on SIMPLE or MEDIUM: see docs/design.md. Over
+// 10,000 episodes HARD's share is 0.32; these 1,000 give 0.34, two standard errors more.
 INSTANTIATE_TEST_SUITE_P(AllTasks, ShippedWorld,
                          testing::Values(Ceiling{"simple", 0.99, 0.75, 0.35, 0.20},
                                          Ceiling{"medium", 0.98, 0.50, 0.35, 0.40},

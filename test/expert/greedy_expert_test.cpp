@@ -4,11 +4,26 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstdlib>
 #include <deque>
 #include <map>
+#include <new>
 #include <tuple>
 
 #include "../sim/test_world.h"
+
+namespace {
+long allocations = 0;
+}  // namespace
+
+// Counted, to check that labelling does without.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace early_fusion::expert {
 namespace {
@@ -203,6 +218,21 @@ TEST(GreedyExpert, LabelsAsItDecides) {
       EXPECT_EQ(optimal, decision.optimal);
     }
   }
+}
+
+TEST(GreedyExpert, LabelsWithoutAllocating) {
+  core::Random random(7);
+  const Scene scene = crowdedScene(random, 12);
+  const core::Request request = {0, 1, 2};
+  const State state = randomState(scene, random);
+  const long before = allocations;
+  for (int index = 0; index < scene.cone.lattice().size(); ++index) {
+    ActionSet optimal = 0;
+    label(scene.cone, scene.instances, state.present, scene.cone.lattice().at(index), request, &optimal);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_FALSE(scene.decide(state, request).costs.empty());
+  EXPECT_GT(allocations, before) << "the counter is to count";
 }
 
 /// A can straight ahead in front of a box, both in the cone, and a cube to the left.
