@@ -12,7 +12,7 @@ inline constexpr double kConeHalfAngleRad = 3.0 * 3.14159265358979323846 / 180.0
 
 /// Which instances the camera could take at every orientation: those whose hull meets the cone, nearest first.
 ///
-/// Computed once per scene with Bullet (GJK) and then only looked up: the rules of an episode and the expert's search
+/// Computed once per scene and then only looked up: the rules of an episode and the expert's search
 /// both read this table, so they cannot disagree.
 class ConeTable {
  public:
