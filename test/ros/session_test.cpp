@@ -8,6 +8,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <thread>
 
 #include "child_process.h"
@@ -208,7 +209,8 @@ TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
   }
   const auto view = launch("view.launch", {"bag:=" + files_->path("demo.bag"), "rviz:=false", "speed:=4"});
   ASSERT_TRUE(view->ends(30)) << view->output();
-  EXPECT_NE(view->output().find("[play-2] has died!\nprocess has finished cleanly"), std::string::npos)
+  // roslaunch's number for a node depends on whether it started the master too.
+  EXPECT_TRUE(std::regex_search(view->output(), std::regex(R"(\[play-\d+\] has died!\nprocess has finished cleanly)")))
       << view->output();
 }
 
