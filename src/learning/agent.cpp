@@ -16,11 +16,16 @@ class PolicyAgent : public Agent {
 
   void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) override {
     observations_.clear();
-    for (const Situation& situation : situations) observations_.push_back(situation.observation);
-    policy_.predict(observations_, probabilities_);
+    for (const Situation& situation : situations) {
+      if (!situation.repeats) observations_.push_back(situation.observation);
+    }
+    if (!observations_.empty()) policy_.predict(observations_, probabilities_);
+    Eigen::Index row = 0;
     for (std::size_t i = 0; i < situations.size(); ++i) {
-      actions[i] = model::chooseAction(probabilities_.row(i), choice_, seed_, situations[i].episode,
-                                       situations[i].state->state().step);
+      Row& probabilities = last_[situations[i].episode];
+      if (!situations[i].repeats) probabilities = probabilities_.row(row++);
+      actions[i] =
+          model::chooseAction(probabilities, choice_, seed_, situations[i].episode, situations[i].state->state().step);
     }
   }
 
@@ -30,8 +35,10 @@ class PolicyAgent : public Agent {
   model::GoalPolicy& policy_;
   model::ActionChoice choice_;
   std::uint64_t seed_;
+  using Row = Eigen::Matrix<float, 1, core::kActionCount>;
   std::vector<model::Observation> observations_;
   model::Probabilities probabilities_;
+  std::map<std::uint64_t, Row> last_;  // of each episode
 };
 
 /// An agent that treats every situation on its own.

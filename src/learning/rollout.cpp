@@ -80,10 +80,10 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
     for (int i = 0; i < count; ++i) observe(*seats[i], draw);
     for (int i = 0; i < count; ++i) {
       const std::vector<TrajectoryStep>& steps = seats[i]->recorder.trajectory().steps;
-      situations[i] = {episodes[i], &seats[i]->episode, {}};
+      situations[i] = {episodes[i], &seats[i]->episode, {}, steps.back().repeats};
       situations[i].observation.request = &steps.back().label.request;
       for (int age = 0; draw && age < model::kHistory && age <= s; ++age) {
-        situations[i].observation.frames[age] = steps[s - age].frame.data();
+        situations[i].observation.frames[age] = steps[s - age].frame->data();
       }
     }
     agent.act(situations, actions);

@@ -17,14 +17,18 @@ core::OptionSet TrainingOptions::options() {
           "new ones before the policy is trained");
   set.add("window", window, 1, 100000, "trajectories", "the most recent ones that are trained on");
   set.add("epochs", epochs, 0.01, 100, "passes", "over the window in a round; a fraction takes a random part of it");
-  set.add("batch_size", batch_size, 1, 1024, "samples", "in a training step");
+  set.add("skip_repeats", skip_repeats,
+          "leave out steps that showed the policy what the step before did, and that it got right");
+  set.add("batch_size", batch_size, 1, 1024, "frames", "in a training step, each with its requests");
+  set.add("requests_per_frame", requests_per_frame, 1, 1 + kOtherRequests, "",
+          "that a frame is labelled and learnt for: the policy's own, and others that could have been made there");
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
-  set.add("relabel_share", relabel_share, 0, 1, "", "share of samples whose frame is labelled for another request");
-  set.add("idle_relabel_share", idle_relabel_share, 0, 1, "", "the same where nothing is left to request");
-  set.add("soft_labels", soft_labels, "learn all of the expert's optimal actions instead of the first of them");
+  set.add("soft_labels", soft_labels, 0, 1, "",
+          "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
-  set.addChoice("exploration", exploration, {"argmax", "sample"}, "how rollouts choose among the probabilities");
+  set.addChoice("exploration", exploration, {"argmax", "sample", "persistent"},
+                "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
   return set;
 }
@@ -74,7 +78,11 @@ double Trainer::learningRate() const {
 std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   std::vector<FrameIndex> window_frames;
   for (std::uint32_t t = 0; t < window_.size(); ++t) {
-    for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) window_frames.push_back({t, s});
+    for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) {
+      const TrajectoryStep& step = window_[t].steps[s];
+      const bool skip = options_.skip_repeats && step.repeats && expert::contains(step.label.optimal, step.action);
+      if (!skip) window_frames.push_back({t, s});
+    }
   }
   std::vector<FrameIndex> drawn;
   double epochs_left = options_.epochs;
@@ -87,14 +95,22 @@ std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   return drawn;
 }
 
+template <class Use>
+void Trainer::forEachLabel(const TrajectoryStep& step, const Use& use) const {
+  use(step.label);
+  const int others = std::min<int>(options_.requests_per_frame - 1, step.others.size());
+  for (int i = 0; i < others; ++i) use(step.others[i]);
+}
+
 std::array<float, core::kActionCount> Trainer::actionWeights() const {
   std::array<double, core::kActionCount> counts{};
   double total = 0;
   for (const Trajectory& trajectory : window_) {
     for (const TrajectoryStep& step : trajectory.steps) {
-      counts[static_cast<int>(step.label.action)] += 1 - relabelShare(step);
-      counts[static_cast<int>(step.relabel.action)] += relabelShare(step);
-      total += 1;
+      forEachLabel(step, [&](const Label& label) {
+        counts[static_cast<int>(label.action)] += 1;
+        total += 1;
+      });
     }
   }
   std::array<float, core::kActionCount> weights{};
@@ -104,30 +120,32 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
   return weights;
 }
 
-double Trainer::relabelShare(const TrajectoryStep& step) const {
-  return step.label.request.empty() ? options_.idle_relabel_share : options_.relabel_share;
+void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) const {
+  const Trajectory& trajectory = window_[index.trajectory];
+  model::Observation observation;
+  for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
+    observation.frames[age] = trajectory.steps[index.step - age].frame->data();
+  }
+  forEachLabel(trajectory.steps[index.step], [&](const Label& label) {
+    model::Sample sample;
+    sample.observation = observation;
+    sample.observation.request = &label.request;
+    sample.weight = action_weights_[static_cast<int>(label.action)];
+    sample.target = target(label);
+    batch.push_back(sample);
+  });
 }
 
-model::Sample Trainer::sample(FrameIndex index, core::Random& random) const {
-  const Trajectory& trajectory = window_[index.trajectory];
-  const TrajectoryStep& step = trajectory.steps[index.step];
-  const Label& label = random.uniform() < relabelShare(step) ? step.relabel : step.label;
-  model::Sample sample;
-  for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
-    sample.observation.frames[age] = trajectory.steps[index.step - age].frame.data();
-  }
-  sample.observation.request = &label.request;
-  sample.weight = action_weights_[static_cast<int>(label.action)];
-  if (!options_.soft_labels) {
-    sample.target[static_cast<int>(label.action)] = 1.f;
-    return sample;
-  }
+std::array<float, core::kActionCount> Trainer::target(const Label& label) const {
+  std::array<float, core::kActionCount> target{};
   int optimal = 0;
   for (core::Action action : core::kAllActions) optimal += expert::contains(label.optimal, action);
   for (core::Action action : core::kAllActions) {
-    if (expert::contains(label.optimal, action)) sample.target[static_cast<int>(action)] = 1.f / optimal;
+    if (expert::contains(label.optimal, action))
+      target[static_cast<int>(action)] = float(options_.soft_labels / optimal);
   }
-  return sample;
+  target[static_cast<int>(label.action)] += float(1 - options_.soft_labels);
+  return target;
 }
 
 RoundStatistics Trainer::rolloutStatistics() const {
@@ -147,13 +165,12 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
   statistics.learning_rate = learningRate();
   action_weights_ = actionWeights();
   const std::vector<FrameIndex> frames = drawFrames();
-  core::Random label_random(seed_, {core::kRelabelStream, rounds_});
   std::vector<model::Sample> batch;
   std::uint64_t steps = 0;
-  for (std::size_t first = 0; first < frames.size(); first += batch.size()) {
+  for (std::size_t first = 0; first < frames.size(); first += options_.batch_size) {
     const std::size_t last = std::min(frames.size(), first + options_.batch_size);
     batch.clear();
-    for (std::size_t i = first; i < last; ++i) batch.push_back(sample(frames[i], label_random));
+    for (std::size_t i = first; i < last; ++i) addSamples(frames[i], batch);
     const std::uint64_t dropout_seed = core::Random(seed_, {core::kDropoutStream, rounds_, first}).next();
     statistics.loss += policy_->lossAndGradients(batch, dropout_seed);
     adam_.step(policy_->parameters().values(), policy_->parameters().gradients(), statistics.learning_rate);

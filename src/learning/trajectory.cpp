@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "early_fusion/core/random.h"
+#include "early_fusion/model/goal_policy.h"
 
 namespace early_fusion::learning {
 
@@ -23,12 +24,25 @@ TrajectoryRecorder::TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode
 const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame) {
   if (trajectory_.steps.empty()) requested_ = static_cast<int>(state.request.size());
   TrajectoryStep step;
-  step.frame = std::move(frame);
+  const bool moved = trajectory_.steps.empty() || *trajectory_.steps.back().frame != frame;
+  step.frame =
+      moved ? std::make_shared<const std::vector<std::uint8_t>>(std::move(frame)) : trajectory_.steps.back().frame;
   step.action = core::Action::kIdle;
   step.label = label(state, state.request);
-  step.relabel = label(state, drawRequest(state));
+  step.others = labelOthers(state);
   trajectory_.steps.push_back(std::move(step));
+  trajectory_.steps.back().repeats = repeatsLast();
   return trajectory_.steps.back();
+}
+
+bool TrajectoryRecorder::repeatsLast() const {
+  const std::vector<TrajectoryStep>& steps = trajectory_.steps;
+  const std::size_t last = steps.size() - 1;
+  if (last < model::kHistory || steps[last].label.request != steps[last - 1].label.request) return false;
+  for (int age = 0; age < model::kHistory; ++age) {
+    if (steps[last - age].frame != steps[last - age - 1].frame) return false;
+  }
+  return true;
 }
 
 Trajectory TrajectoryRecorder::finish(const sim::Score& score) {
@@ -43,20 +57,30 @@ Label TrajectoryRecorder::label(const sim::EpisodeState& state, const core::Requ
   return label;
 }
 
-/// A request that this scene could have had: 1 to requested_ of the instances in the picture. What the picture does not
-/// show is left out, for there the right move depends on where the policy came from, and it came for something else.
-core::Request TrajectoryRecorder::drawRequest(const sim::EpisodeState& state) {
+/// Requests that this scene could have had: each 1 to requested_ of the instances in the picture. What the picture does
+/// not show is left out, for there the right move depends on where the policy came from, and it came for something
+/// else.
+std::vector<Label> TrajectoryRecorder::labelOthers(const sim::EpisodeState& state) const {
+  constexpr int kDraws = 2 * kOtherRequests;  // some give a request again that is there already
   std::vector<int> items;
   for (std::size_t i = 0; i < instances_.size(); ++i) {
     if (((state.present >> i) & 1) && isNear(static_cast<int>(i), state.orientation))
       items.push_back(instances_[i].item);
   }
-  if (items.empty() || requested_ == 0) return state.request;
+  std::vector<Label> others;
+  if (items.empty() || requested_ == 0) return others;
   core::Random random(seed_, {core::kRelabelStream, trajectory_.episode, static_cast<std::uint64_t>(state.step)});
-  random.shuffle(items);
-  items.resize(std::min<std::size_t>(items.size(), 1 + random.below(requested_)));
-  std::sort(items.begin(), items.end());
-  return items;
+  for (int draw = 0; draw < kDraws && others.size() < kOtherRequests; ++draw) {
+    random.shuffle(items);
+    core::Request request(items.begin(),
+                          items.begin() + std::min<std::size_t>(items.size(), 1 + random.below(requested_)));
+    std::sort(request.begin(), request.end());
+    const bool known = request == state.request || std::any_of(others.begin(), others.end(), [&](const Label& other) {
+                         return other.request == request;
+                       });
+    if (!known) others.push_back(label(state, request));
+  }
+  return others;
 }
 
 bool TrajectoryRecorder::isNear(int instance, sim::Orientation orientation) const {

@@ -5,10 +5,23 @@
 
 namespace early_fusion::model {
 
+namespace {
+
+constexpr int kPersistence = 16;  // steps, on average
+
+/// The latest step up to this one at which the random number was drawn anew.
+std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uint32_t step) {
+  while (step > 0 && core::Random(seed, {core::kPersistenceStream, episode, step}).below(kPersistence) != 0) --step;
+  return step;
+}
+
+}  // namespace
+
 ActionChoice actionChoiceFromName(const std::string& name) {
   if (name == "argmax") return ActionChoice::kArgmax;
   if (name == "sample") return ActionChoice::kSample;
-  throw core::Error("unknown way to choose actions '" + name + "'; known are argmax, sample");
+  if (name == "persistent") return ActionChoice::kPersistent;
+  throw core::Error("unknown way to choose actions '" + name + "'; known are argmax, sample, persistent");
 }
 
 core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::kActionCount>>& probabilities,
@@ -16,7 +29,8 @@ core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::k
   Eigen::Index likeliest;
   probabilities.maxCoeff(&likeliest);
   if (choice == ActionChoice::kArgmax) return core::kAllActions[likeliest];
-  core::Random random(seed, {core::kSamplingStream, episode, step});
+  const std::uint32_t drawn_at = choice == ActionChoice::kPersistent ? persistentDraw(seed, episode, step) : step;
+  core::Random random(seed, {core::kSamplingStream, episode, drawn_at});
   double left = random.uniform() * probabilities.cast<double>().sum();
   for (int action = 0; action < core::kActionCount; ++action) {
     left -= probabilities[action];

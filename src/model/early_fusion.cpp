@@ -116,7 +116,8 @@ template <class T>
 void EarlyFusion<T>::prepareBatch(const std::vector<Sample>& samples) {
   if (samples.empty()) throw core::Error("a training step needs at least one sample");
   reserve(static_cast<int>(samples.size()));
-  frames_.clear();
+  batch_.views.clear();
+  batch_.first_goal.clear();
   double weight_sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
@@ -125,11 +126,15 @@ void EarlyFusion<T>::prepareBatch(const std::vector<Sample>& samples) {
       throw core::Error("sample " + std::to_string(i) + " has weight " + std::to_string(sample.weight) +
                         "; a weight must be a finite number of at least 0");
     }
-    frames_.push_back(sample.observation.frames);
+    if (batch_.views.empty() || batch_.views.back() != sample.observation.frames) {
+      batch_.views.push_back(sample.observation.frames);
+      batch_.first_goal.push_back(static_cast<int>(i));
+    }
     for (int k = 0; k < core::kActionCount; ++k) targets_(i, k) = sample.target[k];
     sample_weights_[i] = sample.weight;
     weight_sum += sample.weight;
   }
+  batch_.first_goal.push_back(static_cast<int>(samples.size()));
   if (weight_sum <= 0) throw core::Error("all samples of a training step have weight 0; one at least must have more");
 }
 
@@ -140,7 +145,7 @@ double EarlyFusion<T>::lossAndGradients(const std::vector<Sample>& samples, std:
   const int rows = static_cast<int>(samples.size());
 
   embedding_.forward(counts_, rows, goals_);
-  trunk_.forward(frames_, goals_, features_);
+  trunk_.forward(batch_, goals_, features_);
   statistics_stale_ = true;
   hidden_.forward(features_, rows, activations_);
   activations_.topRows(rows) = (activations_.topRows(rows).array() < 0.f).select(0.f, activations_.topRows(rows));
@@ -153,7 +158,7 @@ double EarlyFusion<T>::lossAndGradients(const std::vector<Sample>& samples, std:
   // A dropped unit's activation is 0 too, and its gradient with it.
   dactivations_.topRows(rows) = (activations_.topRows(rows).array() > 0.f).select(dactivations_.topRows(rows), 0.f);
   hidden_.backward(features_, dactivations_, rows, &dfeatures_);
-  trunk_.backward(dfeatures_, goals_, dgoals_);
+  trunk_.backward(batch_, goals_, dfeatures_, dgoals_);
   embedding_.backward(counts_, dgoals_, rows, nullptr);
   return loss;
 }

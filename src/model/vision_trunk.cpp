@@ -50,16 +50,26 @@ int VisionTrunk<T>::featureCount() const {
 }
 
 template <class T>
-const float* VisionTrunk<T>::goalOf(const nn::Matrix& goals, int block, int image) const {
-  return blocks_[block].shape().goal_channels > 0 ? goals.row(image).data() : nullptr;
+int VisionTrunk<T>::convolutionCount(const ViewBatch& batch, int block) const {
+  return block <= shape_.fusion_block ? batch.viewCount() : batch.goalCount();
 }
 
 template <class T>
-const T* VisionTrunk<T>::blockInput(int block, int image, Scratch& scratch) {
+int VisionTrunk<T>::mapCount(const ViewBatch& batch, int block) const {
+  return block < shape_.fusion_block ? batch.viewCount() : batch.goalCount();
+}
+
+template <class T>
+int VisionTrunk<T>::firstMap(const ViewBatch& batch, int block, int convolution) const {
+  return block == shape_.fusion_block ? batch.first_goal[convolution] : convolution;
+}
+
+template <class T>
+const T* VisionTrunk<T>::blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    nn::stackFrames(frames_[image].data(), pixels(), scratch.input.data());
+    nn::stackFrames(batch.views[convolution].data(), pixels(), scratch.input.data());
   } else {
-    blocks_[block - 1].output(image, scratch.input.data());
+    blocks_[block - 1].output(convolution, scratch.input.data());
   }
   return scratch.input.data();
 }
@@ -73,31 +83,33 @@ void VisionTrunk<T>::writeFeatures(const T* map, float* features) const {
 }
 
 template <class T>
-void VisionTrunk<T>::forward(const std::vector<Frames>& frames, const nn::Matrix& goals, nn::Matrix& features) {
-  frames_ = frames;
-  const int images = static_cast<int>(frames_.size());
+void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& features) {
   for (int b = 0; b < kBlocks; ++b) {
-    blocks_[b].reserve(images);
+    const bool fuses = blocks_[b].shape().goal_channels > 0;
+    const int convolutions = convolutionCount(batch, b);
+    blocks_[b].reserve(mapCount(batch, b));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (int i = 0; i < images; ++i) {
+    for (int i = 0; i < convolutions; ++i) {
       const int thread = omp_get_thread_num();
       Scratch& scratch = scratch_[thread];
-      const T* x = blockInput(b, i, scratch);
-      blocks_[b].forward(thread, i, x, goalOf(goals, b, i), scratch.convolution.data());
+      blocks_[b].convolve(thread, blockInput(batch, b, i, scratch), scratch.convolution.data());
+      for (int map = firstMap(batch, b, i); map < firstMap(batch, b, i + 1); ++map) {
+        blocks_[b].pool(thread, map, scratch.convolution.data(), fuses ? goals.row(map).data() : nullptr);
+      }
     }
-    blocks_[b].finishForward(images);
+    blocks_[b].finishForward(mapCount(batch, b));
   }
-  for (int i = 0; i < images; ++i) {
+  for (int i = 0; i < batch.goalCount(); ++i) {
     blocks_.back().output(i, scratch_[0].output.data());
     writeFeatures(scratch_[0].output.data(), features.row(i).data());
   }
 }
 
 template <class T>
-void VisionTrunk<T>::backward(const nn::Matrix& dfeatures, const nn::Matrix& goals, nn::Matrix& dgoals) {
-  const int images = static_cast<int>(frames_.size());
+void VisionTrunk<T>::backward(const ViewBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures,
+                              nn::Matrix& dgoals) {
   const int positions = featureCount() / shape_.channels;
-  for (int i = 0; i < images; ++i) {
+  for (int i = 0; i < batch.goalCount(); ++i) {
     T* gradient = blocks_.back().outputGradient(i);
     for (int c = 0; c < shape_.channels; ++c) {
       for (int p = 0; p < positions; ++p) {
@@ -106,25 +118,29 @@ void VisionTrunk<T>::backward(const nn::Matrix& dfeatures, const nn::Matrix& goa
     }
     blocks_.back().sumOutputGradient(i);
   }
-  for (int b = kBlocks - 1; b >= 0; --b) backwardBlock(b, goals, dgoals);
+  for (int b = kBlocks - 1; b >= 0; --b) backwardBlock(b, batch, goals, dgoals);
 }
 
 template <class T>
-void VisionTrunk<T>::backwardBlock(int block, const nn::Matrix& goals, nn::Matrix& dgoals) {
-  const nn::ImageShares shares(static_cast<int>(frames_.size()));
-  blocks_[block].beginBackward(shares.images);
+void VisionTrunk<T>::backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals) {
+  nn::ConvBlock<T>& own = blocks_[block];
+  const nn::ImageShares shares(convolutionCount(batch, block));
+  own.beginBackward(mapCount(batch, block));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
   for (int share = 0; share < shares.count; ++share) {
     const int thread = omp_get_thread_num();
     Scratch& scratch = scratch_[thread];
+    T* dy = scratch.convolution.data();
     for (int i = shares.first(share); i < shares.first(share + 1); ++i) {
-      const T* x = blockInput(block, i, scratch);
+      const int first_map = firstMap(batch, block, i);
+      for (int map = first_map; map < firstMap(batch, block, i + 1); ++map) own.unpool(map, map > first_map, dy);
+      const T* x = blockInput(batch, block, i, scratch);
       T* dx = block > 0 ? blocks_[block - 1].outputGradient(i) : nullptr;
-      blocks_[block].backward(thread, share, i == shares.first(share), i, x, scratch.convolution.data(), dx);
+      own.backward(thread, share, i == shares.first(share), x, dy, dx);
       if (block > 0) blocks_[block - 1].sumOutputGradient(i);
     }
   }
-  blocks_[block].finishBackward(shares.images, goals, dgoals, threads_);
+  own.finishBackward(mapCount(batch, block), shares, goals, dgoals, threads_);
 }
 
 template <class T>

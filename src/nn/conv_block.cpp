@@ -68,11 +68,10 @@ void ConvBlock<T>::reserve(int images) {
 }
 
 template <class T>
-void ConvBlock<T>::forward(int thread, int image, const T* x, const float* goal, T* y) {
+void ConvBlock<T>::pool(int thread, int image, const T* y, const float* goal) {
   float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
   const std::size_t at = std::size_t(image) * outputSize();
   goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
-  convolution_.forward(thread, x, y);
   poolForward(mapShape(), y, border_bias, &pooled_[at], &choices_[at], norm_.forwardSums(image));
 }
 
@@ -100,10 +99,14 @@ void ConvBlock<T>::beginBackward(int images) {
 }
 
 template <class T>
-void ConvBlock<T>::backward(int thread, int share, bool first_of_share, int image, const T* x, T* dy, T* dx) {
+void ConvBlock<T>::unpool(int image, bool add, T* dy) {
   const std::size_t at = std::size_t(image) * outputSize();
-  poolBackward(mapShape(), &output_gradients_[at], &pooled_[at], &choices_[at], norm_gradient_, dy,
+  poolBackward(mapShape(), &output_gradients_[at], &pooled_[at], &choices_[at], norm_gradient_, add, dy,
                goal_.borderSums(image));
+}
+
+template <class T>
+void ConvBlock<T>::backward(int thread, int share, bool first_of_share, const T* x, const T* dy, T* dx) {
   const std::size_t size = convolution_.weightsGradientSize();
   float* sum = &share_gradients_[share * size];
   if (first_of_share) {
@@ -137,8 +140,9 @@ void ConvBlock<T>::writeWeightsGradient(int shares, int threads) {
 }
 
 template <class T>
-void ConvBlock<T>::finishBackward(int images, const Matrix& goals, Matrix& dgoals, int threads) {
-  writeWeightsGradient(ImageShares(images).count, threads);
+void ConvBlock<T>::finishBackward(int images, const ImageShares& shares, const Matrix& goals, Matrix& dgoals,
+                                  int threads) {
+  writeWeightsGradient(shares.count, threads);
   float* gradients = parameters_.gradients().data();
   goal_.backward(goals, images, in_channels_, gradients + bias_, gradients + weight_, dgoals);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace early_fusion::nn {
 
@@ -9,15 +10,17 @@ namespace {
 
 constexpr int kRun = 128;  // pixels at a time, whose numbers stay in the innermost cache
 
+float aboutZero(std::uint8_t byte) { return static_cast<float>(byte - kMiddleByte); }
+
 /// bytes (count) -> numbers, exactly.
 void convert(const std::uint8_t* bytes, int count, float* numbers) {
-  for (int i = 0; i < count; ++i) numbers[i] = static_cast<float>(bytes[i]);
+  for (int i = 0; i < count; ++i) numbers[i] = aboutZero(bytes[i]);
 }
 
-/// A byte has no more significant bits than a bfloat16: nothing is rounded.
+/// Such numbers have no more significant bits than a bfloat16: nothing is rounded.
 void convert(const std::uint8_t* bytes, int count, bfloat16* numbers) {
   for (int i = 0; i < count; ++i) {
-    const float number = static_cast<float>(bytes[i]);
+    const float number = aboutZero(bytes[i]);
     std::uint32_t bits;
     std::memcpy(&bits, &number, sizeof bits);
     numbers[i].bits = static_cast<std::uint16_t>(bits >> 16);
@@ -46,7 +49,8 @@ void interleave(const T (&rows)[kStackedFrames][3 * kRun + 1], int count, T* x) 
 
 template <class T>
 void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x) {
-  T rows[kStackedFrames][3 * kRun + 1] = {};
+  T rows[kStackedFrames][3 * kRun + 1];
+  for (T(&row)[3 * kRun + 1] : rows) std::fill(std::begin(row), std::end(row), fromFloat<T>(aboutZero(0)));
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);
     for (int f = 0; f < kStackedFrames; ++f) {

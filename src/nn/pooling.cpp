@@ -154,8 +154,25 @@ inline void addBorderWindow(const MapShape& shape, const Lanes& dz, const IntLan
   }
 }
 
+/// Gives a window's gradient to the pixel that was its greatest and 0 to the other three; or adds these.
+template <bool kAdd, class T>
+inline void writeWindow(const Lanes& dz, const std::uint8_t* choice, T* top, T* bottom, int channels) {
+  if constexpr (kAdd) {
+    T* const pixels[] = {top, top + channels, bottom, bottom + channels};
+    const IntLanes chosen = loadBytes(choice);
+    for (int q = 0; q < 4; ++q) storeLanes(pixels[q], loadLanes(pixels[q]) + (chosen == q ? dz : Lanes{}));
+  } else {
+    const auto chosen = loadBytesAs<T>(choice);
+    const auto stored = pack<T>(dz);
+    storeVector(top, chosen == 0 ? stored : decltype(stored){});
+    storeVector(top + channels, chosen == 1 ? stored : decltype(stored){});
+    storeVector(bottom, chosen == 2 ? stored : decltype(stored){});
+    storeVector(bottom + channels, chosen == 3 ? stored : decltype(stored){});
+  }
+}
+
 /// One pooled row of poolBackward(), channels [c, c + kLanes); adds to sums, one for each border case.
-template <class T>
+template <bool kAdd, class T>
 inline void poolRowBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice,
                             const NormGradient& norm, int row, int c, T* dy, Lanes* sums) {
   const int columns = shape.width / 2;
@@ -170,12 +187,7 @@ inline void poolRowBackward(const MapShape& shape, const T* dx, const T* z, cons
     const std::size_t left = std::size_t(2 * column) * channels;
     const Lanes pooled = loadLanes(z + at);
     const Lanes dz = pooled > 0.f ? a * loadLanes(dx + at) + b * pooled + constant : Lanes{};
-    const auto chosen = loadBytesAs<T>(choice + at);
-    const auto stored = pack<T>(dz);
-    storeVector(top + left, chosen == 0 ? stored : decltype(stored){});
-    storeVector(top + left + channels, chosen == 1 ? stored : decltype(stored){});
-    storeVector(bottom + left, chosen == 2 ? stored : decltype(stored){});
-    storeVector(bottom + left + channels, chosen == 3 ? stored : decltype(stored){});
+    writeWindow<kAdd>(dz, choice + at, top + left, bottom + left, channels);
     if (border_row || column == 0 || column == columns - 1) {
       addBorderWindow(shape, dz, loadBytes(choice + at), row, column, sums);
     } else {
@@ -189,12 +201,13 @@ inline void poolRowBackward(const MapShape& shape, const T* dx, const T* z, cons
 
 template <class T>
 void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
-                  T* dy, double* border_sums) {
+                  bool add, T* dy, double* border_sums) {
+  const auto row_backward = add ? poolRowBackward<true, T> : poolRowBackward<false, T>;
   std::memset(border_sums, 0, kBorderCases * sizeof(double) * shape.channels);
   for (int row = 0; row < shape.height / 2; ++row) {
     for (int c = 0; c < shape.channels; c += kLanes) {
       Lanes sums[kBorderCases]{};
-      poolRowBackward(shape, dx, z, choice, norm, row, c, dy, sums);
+      row_backward(shape, dx, z, choice, norm, row, c, dy, sums);
       for (int border = 0; border < kBorderCases; ++border) {
         addTo(border_sums + border * shape.channels + c, sums[border]);
       }
@@ -207,8 +220,8 @@ void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uin
   template void poolNormalise<T>(const MapShape&, const T*, const float*, const float*, const float*, int, int, T*); \
   template void normalise<T>(const T*, int, int, const float*, const float*, T*);                                    \
   template void sumGradients<T>(const T*, const T*, int, int, double*);                                              \
-  template void poolBackward<T>(const MapShape&, const T*, const T*, const std::uint8_t*, const NormGradient&, T*,   \
-                                double*);
+  template void poolBackward<T>(const MapShape&, const T*, const T*, const std::uint8_t*, const NormGradient&, bool, \
+                                T*, double*);
 EARLY_FUSION_INSTANTIATE(float)
 EARLY_FUSION_INSTANTIATE(bfloat16)
 #undef EARLY_FUSION_INSTANTIATE

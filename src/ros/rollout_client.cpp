@@ -54,7 +54,7 @@ std::string RolloutClient::obstacle() const {
   }
   const bool right_policy = policy_status_ && policy_status_->weights == plan_.weights &&
                             policy_status_->mode == plan_.mode &&
-                            (plan_.mode != "sample" || policy_status_->seed == plan_.seed);
+                            (plan_.mode == "argmax" || policy_status_->seed == plan_.seed);
   if (!right_policy || action_subscriber_.getSubscriber().getNumPublishers() == 0) {
     return "a policy that acts with weights '" + plan_.weights + "' (" + plan_.mode + ")";
   }

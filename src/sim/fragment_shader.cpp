@@ -116,6 +116,7 @@ void FragmentShader::begin(const Viewpoint& viewpoint, const MeshDrawer& drawer)
 void FragmentShader::shade() {
   alignas(64) std::uint32_t colors[kLanes];
   alignas(64) std::int32_t pixels[kLanes];
+  for (int i = count_; i % kLanes != 0; ++i) id_[i] = 0;  // a triangle of an earlier picture may be gone
   for (int first = 0; first < count_; first += kLanes) {
     const IntLanes no_triangle = loadLanes<IntLanes>(id_ + first) == 0;
     const IntLanes mean = select(no_triangle, allLanes(kBackground), color(interpolate(first)));

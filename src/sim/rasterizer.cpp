@@ -71,6 +71,7 @@ class Rasterizer::Implementation {
     }
     if (std::equal(standing.begin(), standing.end(), standing_.begin(), standing_.end(), samePlace)) return;
     standing_ = std::move(standing);
+    last_image_.rgb.clear();
     objects_.clear();
     for (const Instance& instance : standing_) {
       assert(instance.item >= 0 && instance.item < world_.objects.size());
@@ -80,6 +81,15 @@ class Rasterizer::Implementation {
   }
 
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
+    if (last_image_.rgb.empty() || world_from_camera.matrix() != last_pose_.matrix()) {
+      draw(world_from_camera, last_image_);
+      last_pose_ = world_from_camera;
+    }
+    image = last_image_;
+  }
+
+ private:
+  void draw(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
     image.width = image.height = image_size_;
     image.rgb.resize(3u * image_size_ * image_size_);
     const Viewpoint viewpoint{renderPose(world_from_camera), focal_length_, centre_};
@@ -95,7 +105,6 @@ class Rasterizer::Implementation {
     shader_.finish(image);
   }
 
- private:
   /// One fragment for each of the different triangles that a pixel's four samples see. Without branches on what they
   /// see, which no processor can foresee: pixels that see one triangle are told from the others first.
   void addFragments(int y) {
@@ -137,6 +146,8 @@ class Rasterizer::Implementation {
   std::vector<int> whole_, mixed_;  // pixels of a row
   std::vector<Instance> standing_;
   std::vector<ShadowMap::Caster> objects_;
+  core::Image last_image_;  // empty where the scene has changed since
+  Eigen::Isometry3d last_pose_ = Eigen::Isometry3d::Identity();
   const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());
 };
 

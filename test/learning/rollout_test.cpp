@@ -27,12 +27,16 @@ void expectSame(const Trajectory& a, const Trajectory& b) {
   EXPECT_EQ(a.score.f1, b.score.f1);
   ASSERT_EQ(a.steps.size(), b.steps.size());
   for (std::size_t s = 0; s < a.steps.size(); ++s) {
-    EXPECT_EQ(a.steps[s].frame, b.steps[s].frame);
+    EXPECT_EQ(*a.steps[s].frame, *b.steps[s].frame);
+    EXPECT_EQ(a.steps[s].repeats, b.steps[s].repeats);
     EXPECT_EQ(a.steps[s].action, b.steps[s].action);
     EXPECT_EQ(a.steps[s].label.request, b.steps[s].label.request);
     EXPECT_EQ(a.steps[s].label.action, b.steps[s].label.action);
-    EXPECT_EQ(a.steps[s].relabel.request, b.steps[s].relabel.request);
-    EXPECT_EQ(a.steps[s].relabel.action, b.steps[s].relabel.action);
+    ASSERT_EQ(a.steps[s].others.size(), b.steps[s].others.size());
+    for (std::size_t i = 0; i < a.steps[s].others.size(); ++i) {
+      EXPECT_EQ(a.steps[s].others[i].request, b.steps[s].others[i].request);
+      EXPECT_EQ(a.steps[s].others[i].action, b.steps[s].others[i].action);
+    }
   }
 }
 
@@ -53,7 +57,7 @@ TEST(Rollout, TrajectoriesComeInOrderAndComplete) {
   for (int i = 0; i < 12; ++i) {
     EXPECT_EQ(trajectories[i].episode, 40u + i);
     EXPECT_EQ(trajectories[i].steps.size(), 8u);
-    EXPECT_EQ(trajectories[i].steps.front().frame.size(), 3u * 128 * 128);
+    EXPECT_EQ(trajectories[i].steps.front().frame->size(), 3u * 128 * 128);
     EXPECT_DOUBLE_EQ(trajectories[i].agreement(), 1.0);  // the expert agrees with itself
   }
 }
@@ -72,7 +76,7 @@ TEST(Rollout, AReplayOfTheActionsGivesTheSameTrajectories) {
 }
 
 TEST(Rollout, NothingIsDrawnForAgentsThatDoNotLook) {
-  EXPECT_TRUE(rollOut(0, 1, *makeExpertAgent(), false).front().steps.front().frame.empty());
+  EXPECT_TRUE(rollOut(0, 1, *makeExpertAgent(), false).front().steps.front().frame->empty());
 }
 
 TEST(Rollout, TheObserverSeesEveryStepBeforeItIsTaken) {

@@ -22,12 +22,14 @@ inline Trajectory syntheticTrajectory(std::uint64_t episode) {
   for (int s = 0; s < kTinySteps; ++s) {
     TrajectoryStep step;
     const int action = random.below(core::kActionCount);
+    std::vector<std::uint8_t> frame;
     for (int i = 0; i < 3 * kTinySize * kTinySize; ++i) {
-      step.frame.push_back(static_cast<std::uint8_t>(35 * action + random.below(20)));
+      frame.push_back(static_cast<std::uint8_t>(35 * action + random.below(20)));
     }
+    step.frame = std::make_shared<const std::vector<std::uint8_t>>(std::move(frame));
     step.action = core::Action(random.below(core::kActionCount));
     step.label = {{random.below(3)}, core::Action(action), static_cast<expert::ActionSet>(1 << action)};
-    step.relabel = {{random.below(3), 2}, core::Action::kIdle, 1 << 6};
+    step.others = {{{random.below(3), 2}, core::Action::kIdle, 1 << 6}};
     trajectory.steps.push_back(step);
   }
   trajectory.score.f1 = 0.5;

@@ -25,7 +25,7 @@ TrainingOptions tinyTraining() {
   options.batch_size = 5;
   options.learning_rate = 1e-2;
   options.final_learning_rate = 1e-3;
-  options.relabel_share = 0.25;
+  options.requests_per_frame = 2;
   return options;
 }
 
@@ -73,7 +73,7 @@ TEST(Trainer, TheWindowKeepsTheMostRecentTrajectories) {
 TEST(Trainer, LearnsLabelsThatTheFramesShow) {
   TrainingOptions options = tinyTraining();
   options.trajectories = 400;
-  options.relabel_share = 0;
+  options.requests_per_frame = 1;
   const auto trainer = makeTrainer(options);
   const double first = runRound(*trainer).loss;
   double last = first;
@@ -113,30 +113,53 @@ TEST(Trainer, LearningRateFallsAlongACosineBetweenTheTwoRates) {
   EXPECT_NEAR(before, 1e-3, 1e-9);
 }
 
-TEST(Trainer, RelabelledSamplesTeachTheOtherRequestsLabel) {
+/// The loss that is left when every second step repeats the one before it with IDLE as its label, and the others'
+/// label is COLLECT: random frames don't tell them apart. @param taken by the policy in the repeats.
+double lossWithRepeats(core::Action taken) {
   TrainingOptions options = tinyTraining();
-  options.relabel_share = 1;  // every relabel is IDLE
-  const auto trainer = makeTrainer(options);
-  double last = 0;
-  while (!trainer->finished()) last = runRound(*trainer).loss;
-  EXPECT_LT(last, 0.5);
-}
-
-TEST(Trainer, FramesWithNothingToRequestAreRelabelledByTheirOwnShare) {
-  TrainingOptions options = tinyTraining();
-  options.relabel_share = 0;
-  options.idle_relabel_share = 1;  // every relabel is IDLE; every label is another action
+  options.requests_per_frame = 1;
+  options.skip_repeats = true;
   const auto trainer = makeTrainer(options);
   double last = 0;
   while (!trainer->finished()) {
     while (!trainer->roundDue()) {
       Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
-      for (TrajectoryStep& step : trajectory.steps) step.label.request.clear();
+      for (int s = 0; s < kTinySteps; ++s) {
+        TrajectoryStep& step = trajectory.steps[s];
+        step.repeats = s % 2 == 1;
+        step.action = taken;
+        step.label = {{0}, step.repeats ? core::Action::kIdle : core::Action::kCollect, {}};
+        step.label.optimal = static_cast<expert::ActionSet>(1 << static_cast<int>(step.label.action));
+      }
       trainer->add(std::move(trajectory));
     }
     last = trainer->trainRound().loss;
   }
-  EXPECT_LT(last, 0.5);
+  return last;
+}
+
+TEST(Trainer, LeavesOutOnlyRepeatsThatThePolicyGotRight) {
+  EXPECT_LT(lossWithRepeats(core::Action::kIdle), 0.2);
+  EXPECT_GT(lossWithRepeats(core::Action::kPanLeft), 0.4) << "half of the frames say IDLE: 0.69 is left";
+}
+
+TEST(Trainer, LearnsEveryRequestOfAFrame) {
+  TrainingOptions options = tinyTraining();
+  options.requests_per_frame = 3;  // there are two: the own label, another action, and IDLE
+  const auto trainer = makeTrainer(options);
+  double last = 0;
+  while (!trainer->finished()) {
+    while (!trainer->roundDue()) {
+      Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
+      for (TrajectoryStep& step : trajectory.steps) {
+        step.label = {{0}, core::Action::kCollect, 1 << 4};
+        step.others = {{{1}, core::Action::kIdle, 1 << 6}};
+      }
+      trainer->add(std::move(trajectory));
+    }
+    last = trainer->trainRound().loss;
+  }
+  EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "shipped_world.h"
 
@@ -41,40 +42,46 @@ class TrajectoryRecorderTest : public testing::Test {
   sim::Episode episode_;
 };
 
-TEST_F(TrajectoryRecorderTest, EveryRelabelAsksForWhatIsThereAndHasTheExpertsLabel) {
+TEST_F(TrajectoryRecorderTest, OtherRequestsAskForWhatIsThereAndHaveTheExpertsLabel) {
   const Trajectory trajectory = recordAll(1);
   ASSERT_EQ(trajectory.steps.size(), 48u);
   sim::Episode episode = episode_;
   int differing = 0;
   for (const TrajectoryStep& step : trajectory.steps) {
     const sim::EpisodeState& state = episode.state();
-    const core::Request& request = step.relabel.request;
-    EXPECT_LE(request.size(), 3u);
-    EXPECT_TRUE(std::is_sorted(request.begin(), request.end()));
-    for (int item : request) {
-      int there = 0;
-      for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
-        there += ((state.present >> i) & 1) && episode.setup().instances[i].item == item;
+    EXPECT_LE(step.others.size(), std::size_t(kOtherRequests));
+    std::set<core::Request> requests{step.label.request};
+    for (const Label& other : step.others) {
+      const core::Request& request = other.request;
+      EXPECT_TRUE(requests.insert(request).second) << "the same request twice at step " << state.step;
+      EXPECT_GE(request.size(), 1u);
+      EXPECT_LE(request.size(), 3u);
+      EXPECT_TRUE(std::is_sorted(request.begin(), request.end()));
+      for (int item : request) {
+        int there = 0;
+        for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
+          there += ((state.present >> i) & 1) && episode.setup().instances[i].item == item;
+        }
+        EXPECT_LE(std::count(request.begin(), request.end(), item), there);
       }
-      EXPECT_LE(std::count(request.begin(), request.end(), item), there);
+      EXPECT_EQ(other.action,
+                expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request));
+      differing += other.action != step.label.action;
     }
-    EXPECT_EQ(step.relabel.action,
-              expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request));
-    differing += step.relabel.action != step.label.action;
     episode.step(step.action);
   }
-  EXPECT_GT(differing, 5);
+  EXPECT_GT(differing, 50);
 }
 
 // Asking for what the picture does not show would teach the policy to search where its own search had ended.
-TEST_F(TrajectoryRecorderTest, RelabelsAskOnlyForWhatIsInThePicture) {
+TEST_F(TrajectoryRecorderTest, OtherRequestsAskOnlyForWhatIsInThePicture) {
   const Trajectory trajectory = recordAll(1);
   sim::Episode episode = episode_;
   const double fov_rad = shippedWorld().options.horizontal_fov_deg * M_PI / 180;
   for (const TrajectoryStep& step : trajectory.steps) {
     const sim::EpisodeState& state = episode.state();
-    if (step.relabel.request != step.label.request) {
-      for (int item : step.relabel.request) {
+    for (const Label& other : step.others) {
+      for (int item : other.request) {
         bool seen = false;
         for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
           if (!((state.present >> i) & 1) || episode.setup().instances[i].item != item) continue;
@@ -90,20 +97,48 @@ TEST_F(TrajectoryRecorderTest, RelabelsAskOnlyForWhatIsInThePicture) {
   }
 }
 
-TEST_F(TrajectoryRecorderTest, RelabelsDependOnSeedEpisodeAndStepAlone) {
+TEST_F(TrajectoryRecorderTest, OtherRequestsDependOnSeedEpisodeAndStepAlone) {
   const Trajectory a = recordAll(1), b = recordAll(1), c = recordAll(2);
+  const auto requests = [](const TrajectoryStep& step) {
+    std::vector<core::Request> all;
+    for (const Label& other : step.others) all.push_back(other.request);
+    return all;
+  };
   int differing = 0;
   for (std::size_t s = 0; s < a.steps.size(); ++s) {
-    EXPECT_EQ(a.steps[s].relabel.request, b.steps[s].relabel.request);
-    differing += a.steps[s].relabel.request != c.steps[s].relabel.request;
+    EXPECT_EQ(requests(a.steps[s]), requests(b.steps[s]));
+    differing += requests(a.steps[s]) != requests(c.steps[s]);
   }
   EXPECT_GT(differing, 10);
+}
+
+TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
+  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+  sim::EpisodeState state = episode_.state();
+  const std::vector<std::uint8_t> a{1, 2, 3}, b{1, 2, 4};
+  const core::Request request = state.request, less(request.begin() + 1, request.end());
+  struct Case {
+    std::vector<std::uint8_t> frame;
+    core::Request request;
+    bool repeats;
+  };
+  // Three frames make an observation, so only the fourth of the same can be the same observation again.
+  const std::vector<Case> cases{{a, request, false}, {a, request, false}, {a, request, false}, {a, request, true},
+                                {a, less, false},    {a, less, true},     {b, less, false},    {b, less, false},
+                                {b, less, false},    {b, less, true}};
+  for (const Case& expected : cases) {
+    state.request = expected.request;
+    EXPECT_EQ(recorder.record(state, expected.frame).repeats, expected.repeats) << "step " << state.step;
+    EXPECT_EQ(*recorder.trajectory().steps.back().frame, expected.frame);
+    ++state.step;
+  }
+  EXPECT_EQ(recorder.trajectory().steps[0].frame, recorder.trajectory().steps[5].frame) << "kept twice";
 }
 
 TEST_F(TrajectoryRecorderTest, KeepsScoreFramesAndEpisode) {
   const Trajectory trajectory = recordAll(1);
   EXPECT_EQ(trajectory.episode, 6u);
-  EXPECT_EQ(trajectory.steps[10].frame, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(*trajectory.steps[10].frame, (std::vector<std::uint8_t>{1, 2, 3}));
   EXPECT_GT(trajectory.score.f1, 0);
   EXPECT_DOUBLE_EQ(trajectory.agreement(), 1.0);
 }

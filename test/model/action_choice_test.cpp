@@ -21,16 +21,34 @@ TEST(ActionChoice, ArgmaxTakesTheLikeliest) {
   EXPECT_EQ(chooseAction(someProbabilities(), ActionChoice::kArgmax, 1, 2, 3), core::Action::kTiltDown);
 }
 
-TEST(ActionChoice, SamplesDrawEachActionAsOftenAsItsProbabilitySays) {
+/// @param dependent how many draws in a row may have used the same random number.
+void expectDrawnAsOftenAsLikely(ActionChoice choice, int dependent) {
   constexpr int kDraws = 20000;
   std::array<int, core::kActionCount> counts{};
   for (int i = 0; i < kDraws; ++i) {
-    ++counts[static_cast<int>(chooseAction(someProbabilities(), ActionChoice::kSample, 7, i / 48, i % 48))];
+    ++counts[static_cast<int>(chooseAction(someProbabilities(), choice, 7, i / 48, i % 48))];
   }
   for (int k = 0; k < core::kActionCount; ++k) {
     const double p = someProbabilities()[k];
-    EXPECT_NEAR(double(counts[k]) / kDraws, p, 4 * std::sqrt(p * (1 - p) / kDraws)) << "action " << k;
+    EXPECT_NEAR(double(counts[k]) / kDraws, p, 4 * std::sqrt(p * (1 - p) * dependent / kDraws)) << "action " << k;
   }
+}
+
+TEST(ActionChoice, SamplesDrawEachActionAsOftenAsItsProbabilitySays) {
+  expectDrawnAsOftenAsLikely(ActionChoice::kSample, 1);
+}
+
+TEST(ActionChoice, PersistentDrawsDoTooButKeepToOneActionForAWhile) {
+  expectDrawnAsOftenAsLikely(ActionChoice::kPersistent, 32);
+  int changes = 0;
+  for (int i = 1; i < 4800; ++i) {
+    const auto draw = [&](int at) {
+      return chooseAction(someProbabilities(), ActionChoice::kPersistent, 7, at / 48, at % 48);
+    };
+    changes += draw(i) != draw(i - 1);
+  }
+  EXPECT_GT(changes, 100);
+  EXPECT_LT(changes, 480);  // 4800 / 16 new numbers and 100 episodes, most of which change the action
 }
 
 TEST(ActionChoice, ADrawIsDecidedBySeedEpisodeAndStep) {
@@ -50,6 +68,7 @@ TEST(ActionChoice, ADrawIsDecidedBySeedEpisodeAndStep) {
 TEST(ActionChoice, NamesItsWays) {
   EXPECT_EQ(actionChoiceFromName("argmax"), ActionChoice::kArgmax);
   EXPECT_EQ(actionChoiceFromName("sample"), ActionChoice::kSample);
+  EXPECT_EQ(actionChoiceFromName("persistent"), ActionChoice::kPersistent);
   EXPECT_THROW(actionChoiceFromName("greedy"), core::Error);
 }
 

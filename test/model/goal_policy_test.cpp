@@ -185,6 +185,40 @@ TEST(GoalPolicy, GradientsAreTheSlopeOfTheLoss) {
   EXPECT_NEAR((above - below) / (2 * kStep) / gradients.norm(), 1, 0.02);
 }
 
+/// Every view of the batch with three requests of the batch, side by side.
+std::vector<Sample> withThreeRequests(const TestBatch& batch) {
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < batch.samples.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Sample sample = batch.samples[(i + 2 * k) % batch.samples.size()];
+      sample.observation.frames = batch.samples[i].observation.frames;
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+TEST_P(EveryPrecision, SharingAViewBetweenRequestsChangesNothing) {
+  const TestBatch batch(5, 32, kItems, 3), copy(5, 32, kItems, 3);
+  const std::vector<Sample> together = withThreeRequests(batch);
+  // The same numbers, but no two neighbours with the same memory: every other sample looks at the copy.
+  std::vector<Sample> apart = together;
+  const std::vector<Sample> copies = withThreeRequests(copy);
+  for (std::size_t i = 1; i < apart.size(); i += 2) apart[i].observation = copies[i].observation;
+  for (int fusion_block : {0, 1, 3}) {
+    PolicyOptions options = smallOptions(GetParam());
+    options.fusion_block = fusion_block;
+    const auto shared = makeSmall(options), separate = makeSmall(options);
+    const bool half = GetParam() == "bf16";
+    EXPECT_NEAR(shared->lossAndGradients(together, 5), separate->lossAndGradients(apart, 5), half ? 5e-3 : 1e-5);
+    const Eigen::VectorXf& a = shared->parameters().gradients();
+    const Eigen::VectorXf& b = separate->parameters().gradients();
+    EXPECT_LT((a - b).norm(), (half ? 0.05f : 1e-4f) * b.norm()) << "fusion block " << fusion_block;
+    // The unbiased variance divides by the number of values, and fewer have been seen.
+    EXPECT_LT((shared->parameters().buffers() - separate->parameters().buffers()).cwiseAbs().maxCoeff(), 1e-3f);
+  }
+}
+
 TEST(GoalPolicy, DropoutIsDecidedByItsSeedAndOnlyInTraining) {
   const auto policy = makeSmall(smallOptions());
   const TestBatch batch(8, 32, kItems, 3);

@@ -55,7 +55,7 @@ struct TorchEarlyFusion : torch::nn::Module {
 struct TorchBatch {
   TorchBatch(const std::vector<Sample>& samples, int image_size, int items) {
     const std::int64_t n = static_cast<std::int64_t>(samples.size());
-    images = torch::zeros({n, 9, image_size, image_size});
+    images = torch::full({n, 9, image_size, image_size}, -2.f);  // black
     counts = torch::zeros({n, items});
     targets = torch::zeros({n, core::kActionCount});
     weights = torch::zeros({n});
@@ -65,7 +65,7 @@ struct TorchBatch {
         if (bytes == nullptr) continue;
         const torch::Tensor frame =
             torch::from_blob(const_cast<std::uint8_t*>(bytes), {image_size, image_size, 3}, torch::kUInt8);
-        images[i].slice(0, 3 * f, 3 * f + 3).copy_(frame.permute({2, 0, 1}).to(torch::kFloat) / 255.0);
+        images[i].slice(0, 3 * f, 3 * f + 3).copy_((frame.permute({2, 0, 1}).to(torch::kFloat) - 128) / 64);
       }
       for (int item : *samples[i].observation.request) counts[i][item] += 1;
       for (int k = 0; k < core::kActionCount; ++k) targets[i][k] = samples[i].target[k];

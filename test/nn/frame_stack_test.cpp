@@ -21,16 +21,16 @@ TYPED_TEST(FrameStack, LaysFramesSideBySideExactly) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
     const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
-    std::vector<TypeParam> x(pixels * kStored + 1, fromFloat<TypeParam>(-1.f));
+    std::vector<TypeParam> x(pixels * kStored + 1, fromFloat<TypeParam>(-200.f));
     stackFrames(with_black, pixels, x.data());
     for (int p = 0; p < pixels; ++p) {
       for (int c = 0; c < kStored; ++c) {
-        const bool black = c / 3 == 1 || c >= kImageChannels;
-        const float expected = black ? 0.f : frames[c / 3][3 * p + c % 3];
+        const int byte = c / 3 == 1 ? 0 : c < kImageChannels ? frames[c / 3][3 * p + c % 3] : kMiddleByte;
+        const auto expected = static_cast<float>(byte - kMiddleByte);
         ASSERT_EQ(toFloat(x[p * kStored + c]), expected) << "pixel " << p << " of " << pixels << ", channel " << c;
       }
     }
-    EXPECT_EQ(toFloat(x.back()), -1.f) << "written past the end";
+    EXPECT_EQ(toFloat(x.back()), -200.f) << "written past the end";
   }
 }
 

@@ -81,8 +81,8 @@ TEST(Pooling, SendsGradientsBackToTheChosenPixelsOnly) {
   std::vector<double> sums(kBorderCases * channels);
   poolForward(shape, y_stored.data(), bias.data(), z.data(), choice.data(), sums.data());
   const std::vector<float> ones(channels, 1.f), zeros(channels, 0.f);
-  poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, dy.data(),
-               sums.data());
+  poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, false,
+               dy.data(), sums.data());
   Numbers border_sums(kBorderCases * channels);
   for (int row = 0; row < 8; ++row) {
     for (int column = 0; column < 6; ++column) {
@@ -96,6 +96,12 @@ TEST(Pooling, SendsGradientsBackToTheChosenPixelsOnly) {
     }
   }
   EXPECT_LT(worstError(sums, border_sums), 1e-6);
+
+  const std::vector<float> once = dy;
+  poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, true,
+               dy.data(), sums.data());
+  for (std::size_t i = 0; i < dy.size(); ++i) EXPECT_EQ(dy[i], 2 * once[i]);
+  EXPECT_LT(worstError(sums, border_sums), 1e-6) << "of what was added alone";
 }
 
 }  // namespace

@@ -154,7 +154,8 @@ struct FastConvBlock {
   Numbers forward() {
     for (int i = 0; i < images; ++i) {
       const int thread = i % threads;
-      block.forward(thread, i, x.data() + i * inputSize(), goal(i), scratchOf(thread));
+      block.convolve(thread, x.data() + i * inputSize(), scratchOf(thread));
+      block.pool(thread, i, scratchOf(thread), goal(i));
     }
     block.finishForward(images);
     Numbers all;
@@ -179,11 +180,12 @@ struct FastConvBlock {
     for (int share = 0; share < shares.count; ++share) {
       const int thread = share % threads;
       for (int i = shares.first(share); i < shares.first(share + 1); ++i) {
-        block.backward(thread, share, i == shares.first(share), i, x.data() + i * inputSize(), scratchOf(thread),
+        block.unpool(i, false, scratchOf(thread));
+        block.backward(thread, share, i == shares.first(share), x.data() + i * inputSize(), scratchOf(thread),
                        dx.data() + i * inputSize());
       }
     }
-    block.finishBackward(images, goals, dgoals, threads);
+    block.finishBackward(images, shares, goals, dgoals, threads);
   }
 
   Numbers predict(bool all_threads) {

@@ -107,13 +107,17 @@ TEST_F(RolloutRecorderTest, RecordsWhatARolloutInOneProcessDoes) {
     EXPECT_EQ(recorded->score.f1, trajectory.score.f1);
     ASSERT_EQ(recorded->steps.size(), trajectory.steps.size());
     for (std::size_t i = 0; i < trajectory.steps.size(); ++i) {
-      EXPECT_EQ(recorded->steps[i].frame, trajectory.steps[i].frame);
+      EXPECT_EQ(*recorded->steps[i].frame, *trajectory.steps[i].frame);
+      EXPECT_EQ(recorded->steps[i].repeats, trajectory.steps[i].repeats);
       EXPECT_EQ(recorded->steps[i].action, trajectory.steps[i].action);
       EXPECT_EQ(recorded->steps[i].label.action, trajectory.steps[i].label.action);
       EXPECT_EQ(recorded->steps[i].label.optimal, trajectory.steps[i].label.optimal);
       EXPECT_EQ(recorded->steps[i].label.request, trajectory.steps[i].label.request);
-      EXPECT_EQ(recorded->steps[i].relabel.request, trajectory.steps[i].relabel.request);
-      EXPECT_EQ(recorded->steps[i].relabel.action, trajectory.steps[i].relabel.action);
+      ASSERT_EQ(recorded->steps[i].others.size(), trajectory.steps[i].others.size());
+      for (std::size_t k = 0; k < trajectory.steps[i].others.size(); ++k) {
+        EXPECT_EQ(recorded->steps[i].others[k].request, trajectory.steps[i].others[k].request);
+        EXPECT_EQ(recorded->steps[i].others[k].action, trajectory.steps[i].others[k].action);
+      }
     }
   }
   EXPECT_TRUE(recorder_->complete());

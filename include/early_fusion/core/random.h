@@ -39,13 +39,14 @@ class Random {
 
 /// The keys that separate the streams drawn from one session seed.
 enum RandomStream : std::uint64_t {
-  kEpisodeStream = 1,      ///< {episode}: scene, request and first camera orientation
-  kSamplingStream = 2,     ///< {episode, step}: the action drawn from the policy's probabilities
-  kInitialisation = 3,     ///< {}: the network's first weights
-  kShuffleStream = 4,      ///< {round, epoch}: the order of training samples
-  kDropoutStream = 5,      ///< {training step}: dropout masks
-  kRelabelStream = 6,      ///< {episode, step}: the other requests that a frame is labelled for
-  kRandomPolicyStream = 7  ///< {episode, step}: the random baseline
+  kEpisodeStream = 1,       ///< {episode}: scene, request and first camera orientation
+  kSamplingStream = 2,      ///< {episode, step}: the action drawn from the policy's probabilities
+  kInitialisation = 3,      ///< {}: the network's first weights
+  kShuffleStream = 4,       ///< {round, epoch}: the order of training samples
+  kDropoutStream = 5,       ///< {training step}: dropout masks
+  kRelabelStream = 6,       ///< {episode, step}: the other requests that a frame is labelled for
+  kRandomPolicyStream = 7,  ///< {episode, step}: the random baseline
+  kPersistenceStream = 8    ///< {episode, step}: whether a persistent draw is made anew
 };
 
 }  // namespace early_fusion::core

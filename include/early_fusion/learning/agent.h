@@ -19,6 +19,7 @@ struct Situation {
   std::uint64_t episode = 0;
   const sim::Episode* state = nullptr;  ///< for agents that may see the simulator's state
   model::Observation observation;       ///< for those that may not
+  bool repeats = false;                 ///< observation is that of the episode's step before
 };
 
 /// Decides what to do, in several episodes at once.

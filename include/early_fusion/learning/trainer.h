@@ -20,14 +20,14 @@ struct TrainingOptions {
   int trajectories_per_round = 50;     ///< new ones before the policy is trained on the window
   int window = 150;                    ///< most recent trajectories that are trained on
   double epochs = 3;                   ///< passes over the window in a round; a fraction takes a random part of it
-  int batch_size = 32;                 ///< samples
+  bool skip_repeats = false;           ///< leave out repeats (TrajectoryStep::repeats) that the policy got right
+  int batch_size = 32;                 ///< frames in a training step, each with its requests
+  int requests_per_frame = 1;          ///< that a frame is labelled and learnt for: the policy's own and others
   double learning_rate = 1e-4;         ///< at the session's start
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
-  double relabel_share = 0;            ///< share of samples whose frame is labelled for another request
-  double idle_relabel_share = 0;       ///< the same where nothing is left to request, and the label IDLE teaches little
-  bool soft_labels = false;            ///< learn all of the expert's optimal actions, not the first of them
+  double soft_labels = 0;              ///< share of a target that goes to all optimal actions alike, not to the label
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
-  std::string exploration = "sample";  ///< how rollouts choose actions: argmax or sample
+  std::string exploration = "sample";  ///< how rollouts choose actions: argmax, sample or persistent
   double weight_decay = 0;             ///< decoupled, a step
 
   core::OptionSet options();
@@ -95,8 +95,11 @@ class Trainer {
   int newInRound() const;
   double learningRate() const;
   std::vector<FrameIndex> drawFrames() const;
-  double relabelShare(const TrajectoryStep& step) const;
-  model::Sample sample(FrameIndex index, core::Random& random) const;
+  /// Calls use(label) for every request of a frame that is learnt for.
+  template <class Use>
+  void forEachLabel(const TrajectoryStep& step, const Use& use) const;
+  void addSamples(FrameIndex index, std::vector<model::Sample>& batch) const;
+  std::array<float, core::kActionCount> target(const Label& label) const;
   std::array<float, core::kActionCount> actionWeights() const;
   RoundStatistics rolloutStatistics() const;
 

@@ -18,12 +18,17 @@ struct Label {
   expert::ActionSet optimal = 0;
 };
 
+/// How many requests besides the policy's own a frame is labelled for, if the scene has so many.
+inline constexpr int kOtherRequests = 7;
+
 /// One step of a rollout as training keeps it.
 struct TrajectoryStep {
-  std::vector<std::uint8_t> frame;  ///< RGB8 (image_size, image_size, 3)
-  core::Action action;              ///< what the policy did
-  Label label;                      ///< for the request that it was given
-  Label relabel;  ///< for another request at the same frame: its own when there is nothing else to ask for
+  /// RGB8 (image_size, image_size, 3). Where nothing has moved, the frame of the step before: the same memory.
+  std::shared_ptr<const std::vector<std::uint8_t>> frame;
+  core::Action action;        ///< what the policy did
+  Label label;                ///< for the request that it was given
+  std::vector<Label> others;  ///< for other requests at the same frame, each another, at most kOtherRequests
+  bool repeats = false;       ///< the policy saw frames and request of the step before once more
 };
 
 struct Trajectory {
@@ -39,7 +44,7 @@ struct Trajectory {
 /// trainer node, which sees the states as messages.
 class TrajectoryRecorder {
  public:
-  /// @param seed of the session: with `episode` and the step it decides which other request a frame is labelled for.
+  /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
   TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
                      std::shared_ptr<const sim::ConeTable> cone);
 
@@ -57,7 +62,8 @@ class TrajectoryRecorder {
 
  private:
   Label label(const sim::EpisodeState& state, const core::Request& request) const;
-  core::Request drawRequest(const sim::EpisodeState& state);
+  bool repeatsLast() const;
+  std::vector<Label> labelOthers(const sim::EpisodeState& state) const;
   bool isNear(int instance, sim::Orientation orientation) const;
 
   std::uint64_t seed_;

@@ -9,9 +9,12 @@
 namespace early_fusion::model {
 
 /// How an action is chosen from the policy's probabilities: the likeliest, or drawn from them to explore.
-enum class ActionChoice { kArgmax, kSample };
+///
+/// kPersistent draws with one random number for 16 steps on average: each action is still as likely as the policy says,
+/// but where two are equally likely the camera keeps to one of them instead of trembling between both.
+enum class ActionChoice { kArgmax, kSample, kPersistent };
 
-/// @throws Error when `name` is neither "argmax" nor "sample".
+/// @throws Error when `name` is none of "argmax", "sample" and "persistent".
 ActionChoice actionChoiceFromName(const std::string& name);
 
 /// @param probabilities of the seven actions.

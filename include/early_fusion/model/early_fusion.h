@@ -51,7 +51,7 @@ class EarlyFusion : public GoalPolicy {
   bool statistics_stale_ = true;
 
   // A training step's, one row a sample.
-  std::vector<Frames> frames_;
+  ViewBatch batch_;
   nn::Matrix counts_, goals_, features_, activations_, logits_, targets_;
   nn::Matrix dlogits_, dactivations_, dfeatures_, dgoals_;
   Eigen::VectorXd sample_weights_;

@@ -68,7 +68,8 @@ class GoalPolicy {
   virtual void predict(const std::vector<Observation>& observations, Probabilities& probabilities) = 0;
 
   /// Forward with batch statistics and dropout, then backward: fills parameters().gradients() with the gradient of the
-  /// weighted mean cross-entropy, and updates the running statistics.
+  /// weighted mean cross-entropy, and updates the running statistics. Neighbouring samples with the same frames share
+  /// the work that their goals have no part in, and count as one image in the batch statistics up to there.
   /// @param dropout_seed decides the dropout mask. @return the loss.
   virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
 };

@@ -24,8 +24,20 @@ struct VisionTrunkShape {
   int fusion_block;   ///< the goal joins the output of this block, [0, 3]; 0: the image itself
 };
 
+/// What a training step sees: views, each with the goals that are asked for there. A view's goals lie side by side.
+struct ViewBatch {
+  std::vector<Frames> views;
+  std::vector<int> first_goal;  ///< of each view, and last the number of goals: views.size() + 1 numbers
+
+  int viewCount() const { return static_cast<int>(views.size()); }
+  int goalCount() const { return first_goal.back(); }
+};
+
 /// The four convolution blocks that make a feature map of three frames, with a goal vector tiled over the input of one
 /// of them. Images run in parallel, each from end to end of a block in its core's cache.
+///
+/// In training, what does not depend on the goal, the blocks before the fusion and the convolution of that one, is
+/// computed once a view; exact, because a tiled goal is a bias. Running statistics of those blocks are over views.
 /// @tparam T float or bfloat16, in which maps are held and convolutions computed.
 template <class T>
 class VisionTrunk {
@@ -41,12 +53,12 @@ class VisionTrunk {
   /// Numbers in the last map: channels * (image_size / 16)^2.
   int featureCount() const;
 
-  /// Training: frames, goals (images, goal_channels) -> features (images, featureCount()), C,H,W within a row.
-  void forward(const std::vector<Frames>& frames, const nn::Matrix& goals, nn::Matrix& features);
+  /// Training: batch, goals (goalCount(), goal_channels) -> features (goalCount(), featureCount()), C,H,W within a row.
+  void forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& features);
 
-  /// Backward of the last forward(), whose frames must still be there: dfeatures, goals -> the gradients of all
-  /// parameters of the blocks, and dgoals.
-  void backward(const nn::Matrix& dfeatures, const nn::Matrix& goals, nn::Matrix& dgoals);
+  /// Backward of the last forward(): the same batch and goals, dfeatures -> the gradients of all parameters of the
+  /// blocks, and dgoals.
+  void backward(const ViewBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures, nn::Matrix& dgoals);
 
   /// Inference of one observation, goal (goal_channels) -> features (featureCount()). Threads may call at a time, each
   /// with its own number in [0, threads).
@@ -64,16 +76,18 @@ class VisionTrunk {
   };
 
   int pixels() const { return shape_.image_size * shape_.image_size; }
-  const float* goalOf(const nn::Matrix& goals, int block, int image) const;
-  const T* blockInput(int block, int image, Scratch& scratch);
-  void backwardBlock(int block, const nn::Matrix& goals, nn::Matrix& dgoals);
+  /// Convolutions and pooled maps of a block; those of map `convolution` are [firstMap(), firstMap(convolution + 1)).
+  int convolutionCount(const ViewBatch& batch, int block) const;
+  int mapCount(const ViewBatch& batch, int block) const;
+  int firstMap(const ViewBatch& batch, int block, int convolution) const;
+  const T* blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch);
+  void backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
   void writeFeatures(const T* map, float* features) const;
 
   VisionTrunkShape shape_;
   int threads_;
   std::vector<nn::ConvBlock<T>> blocks_;
   std::vector<Scratch> scratch_;
-  std::vector<Frames> frames_;
 };
 
 }  // namespace early_fusion::model

@@ -39,6 +39,9 @@ struct ImageShares {
 /// Works image by image, so that whoever runs images in parallel can keep what passes between two layers in the cache;
 /// between the passes over a batch, finishForward() and finishBackward() join the images' sums. Functions that take
 /// `thread` may run at the same time for different threads and images.
+///
+/// A tiled goal is a bias to the convolution: images that differ in their goal alone share one convolution, forward and
+/// backward, and only from the pooling on each has a map of its own.
 /// @tparam T float or bfloat16, the element of the maps (H,W,C).
 template <class T>
 class ConvBlock {
@@ -62,8 +65,10 @@ class ConvBlock {
   /// Room for the maps that a training step of so many images keeps.
   void reserve(int images);
 
-  /// x (size,size,stored), goal (goal_channels) or nullptr; y is scratch, (size,size,out).
-  void forward(int thread, int image, const T* x, const float* goal, T* y);
+  /// x (size,size,stored) -> y (size,size,out), of which pool() makes an image's map with its goal (goal_channels) or
+  /// nullptr.
+  void convolve(int thread, const T* x, T* y) { convolution_.forward(thread, x, y); }
+  void pool(int thread, int image, const T* y, const float* goal);
   void finishForward(int images);
   /// Training's output of an image, (size/2,size/2,out), after finishForward().
   void output(int image, T* out) const;
@@ -73,13 +78,16 @@ class ConvBlock {
   void sumOutputGradient(int image);
   /// Joins the sums; backward() of any image may follow.
   void beginBackward(int images);
-  /// The images of a share must come in order, from one thread.
-  /// x as in forward(); dx (size,size,stored) or nullptr; dy is scratch, (size,size,out).
-  void backward(int thread, int share, bool first_of_share, int image, const T* x, T* dy, T* dx);
+  /// The gradient dy (size,size,out) of what convolve() gave: that of one image, or added to those of others.
+  void unpool(int image, bool add, T* dy);
+  /// The convolutions of a share must come in order, from one thread.
+  /// x as in convolve(); dx (size,size,stored) or nullptr.
+  void backward(int thread, int share, bool first_of_share, const T* x, const T* dy, T* dx);
   /// Writes the gradients of all parameters, and dgoals (images, goal_channels) when there is a goal.
-  void finishBackward(int images, const Matrix& goals, Matrix& dgoals, int threads);
+  /// @param shares of the convolutions.
+  void finishBackward(int images, const ImageShares& shares, const Matrix& goals, Matrix& dgoals, int threads);
 
-  /// Inference with running statistics: x, goal, scratch as in forward() -> out (size/2,size/2,out).
+  /// Inference with running statistics: x, goal, y as in convolve() and pool() -> out (size/2,size/2,out).
   void predict(int thread, const T* x, const float* goal, T* y, T* out);
   /// The same bits with all threads on one image.
   void predictOnAllThreads(const T* x, const float* goal, T* y, T* out, int threads);

@@ -49,9 +49,10 @@ struct NormGradient {
 };
 
 /// Backward of poolForward() and of batch norm: dx, z, choice (H/2,W/2,C) -> dy (H,W,C), and border_sums (9,C), the
-/// sum of dy over each border case: the gradient of `bias`.
+/// sum of this dy over each border case: the gradient of `bias`.
+/// @param add whether to add to what is in dy: maps pooled with several biases have the sum of their gradients.
 template <class T>
 void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
-                  T* dy, double* border_sums);
+                  bool add, T* dy, double* border_sums);
 
 }  // namespace early_fusion::nn

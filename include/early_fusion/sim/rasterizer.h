@@ -24,6 +24,7 @@ class Rasterizer {
   /// Which objects stand where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
   void setScene(const std::vector<Instance>& instances, InstanceMask present);
 
+  /// Costs a copy where neither the scene nor the camera has moved since the last picture.
   /// @param world_from_camera optical frame (z forward, x right, y down) in the world.
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image);
 
