@@ -117,6 +117,7 @@ TEST(Trainer, LearningRateFallsAlongACosineBetweenTheTwoRates) {
 /// label is COLLECT: random frames don't tell them apart. @param taken by the policy in the repeats.
 double lossWithRepeats(core::Action taken) {
   TrainingOptions options = tinyTraining();
+  options.trajectories = 200;
   options.requests_per_frame = 1;
   options.skip_repeats = true;
   const auto trainer = makeTrainer(options);

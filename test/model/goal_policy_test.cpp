@@ -175,7 +175,7 @@ TEST(GoalPolicy, GradientsAreTheSlopeOfTheLoss) {
   policy->lossAndGradients(batch.samples, 4);
   const Eigen::VectorXf values = policy->parameters().values(), gradients = policy->parameters().gradients();
   const Eigen::VectorXf direction = gradients / gradients.norm();
-  constexpr float kStep = 2e-3f;
+  constexpr float kStep = 5e-4f;
   policy->parameters().values() = values + kStep * direction;
   policy->parametersChanged();
   const double above = policy->lossAndGradients(batch.samples, 4);
