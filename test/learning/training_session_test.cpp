@@ -38,7 +38,8 @@ class TrainingSessionTest : public testing::Test {
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
     RolloutRunner runner(session.world(), session.task(), session.options().seed);
     while (session.trainer().trajectoriesSeen() < trajectories) {
-      const auto agent = makePolicyAgent(session.trainer().policy(), model::ActionChoice::kSample, 1);
+      const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
+      const auto agent = makePolicyAgent(session.trainer().policy(), exploration, session.options().seed);
       runner.run(session.trainer().trajectoriesSeen(), session.trainer().missingInRound(), *agent, true,
                  [&](Trajectory trajectory) { session.trainer().add(std::move(trajectory)); });
       session.trainRound();
@@ -60,8 +61,8 @@ TEST_F(TrainingSessionTest, RunsToAScoreAndTheSameSeedGivesTheSameWeights) {
     EXPECT_EQ(result["episodes"], 2);
     EXPECT_EQ(result["training"]["trajectories"], 9);
   }
-  EXPECT_EQ(core::readFile(folder_ / "a" / "weights.safetensors"),
-            core::readFile(folder_ / "b" / "weights.safetensors"));
+  EXPECT_TRUE(core::readFile(folder_ / "a" / "weights.safetensors") ==
+              core::readFile(folder_ / "b" / "weights.safetensors"));
 }
 
 TEST_F(TrainingSessionTest, AnInterruptedSessionGoesOnBitForBit) {
@@ -77,7 +78,7 @@ TEST_F(TrainingSessionTest, AnInterruptedSessionGoesOnBitForBit) {
   EXPECT_TRUE(resumed.resumed());
   EXPECT_EQ(resumed.trainer().trajectoriesSeen(), 6u);
   runSession(resumed, [](const Progress&) {});
-  EXPECT_EQ(core::readFile(whole.weightsPath()), core::readFile(resumed.weightsPath()));
+  EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
   EXPECT_EQ(LearningCurve::parse(core::readFile(folder_ / "parts" / "curve.csv"), "curve").points().size(), 3u);
 }
 
