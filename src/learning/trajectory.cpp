@@ -57,16 +57,34 @@ Label TrajectoryRecorder::label(const sim::EpisodeState& state, const core::Requ
   return label;
 }
 
-/// Requests that this scene could have had: each 1 to requested_ of the instances in the picture. What the picture does
-/// not show is left out, for there the right move depends on where the policy came from, and it came for something
-/// else.
-std::vector<Label> TrajectoryRecorder::labelOthers(const sim::EpisodeState& state) const {
-  constexpr int kDraws = 2 * kOtherRequests;  // some give a request again that is there already
+/// The items of the instances that might be asked for here as if they had been from the start: those of a type that is
+/// in the picture, or that never was. What was in the picture and has left it is out: whoever looked for it would not
+/// be here. So the way that the camera has come tells where what it never saw must be, as it does for the policy's own
+/// request.
+std::vector<int> TrajectoryRecorder::askableItems(const sim::EpisodeState& state) {
+  sim::InstanceMask near = 0;
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    if (((state.present >> i) & 1) && isNear(static_cast<int>(i), state.orientation)) near |= sim::InstanceMask(1) << i;
+  }
+  seen_ |= near;
   std::vector<int> items;
   for (std::size_t i = 0; i < instances_.size(); ++i) {
-    if (((state.present >> i) & 1) && isNear(static_cast<int>(i), state.orientation))
-      items.push_back(instances_[i].item);
+    if (!((state.present >> i) & 1)) continue;
+    bool in_picture = false, was_seen = false;
+    for (std::size_t k = 0; k < instances_.size(); ++k) {
+      if (instances_[k].item != instances_[i].item) continue;
+      in_picture |= (near >> k) & 1;
+      was_seen |= (seen_ >> k) & 1;
+    }
+    if (in_picture || !was_seen) items.push_back(instances_[i].item);
   }
+  return items;
+}
+
+/// Requests that this scene could have had, each 1 to requested_ of the askable instances.
+std::vector<Label> TrajectoryRecorder::labelOthers(const sim::EpisodeState& state) {
+  constexpr int kDraws = 2 * kOtherRequests;  // some give a request again that is there already
+  std::vector<int> items = askableItems(state);
   std::vector<Label> others;
   if (items.empty() || requested_ == 0) return others;
   core::Random random(seed_, {core::kRelabelStream, trajectory_.episode, static_cast<std::uint64_t>(state.step)});

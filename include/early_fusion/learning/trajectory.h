@@ -63,13 +63,15 @@ class TrajectoryRecorder {
  private:
   Label label(const sim::EpisodeState& state, const core::Request& request) const;
   bool repeatsLast() const;
-  std::vector<Label> labelOthers(const sim::EpisodeState& state) const;
+  std::vector<Label> labelOthers(const sim::EpisodeState& state);
+  std::vector<int> askableItems(const sim::EpisodeState& state);
   bool isNear(int instance, sim::Orientation orientation) const;
 
   std::uint64_t seed_;
   std::vector<sim::Instance> instances_;
   std::shared_ptr<const sim::ConeTable> cone_;
-  int requested_ = 0;  // instances requested at step 0
+  int requested_ = 0;           // instances requested at step 0
+  sim::InstanceMask seen_ = 0;  // in any picture so far
   Trajectory trajectory_;
 };
 
