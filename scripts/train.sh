@@ -38,6 +38,6 @@ echo "Trained weights: $output/weights.safetensors"
 /usr/bin/python3 - "$output/result.json" <<'PYTHON'
 import json, sys
 result = json.load(open(sys.argv[1]))
-print("Score on %d held-out episodes of %s: F1 %.3f, precision %.3f, recall %.3f, agreement %.3f" % tuple(
-    result[key] for key in ("episodes", "task", "f1", "precision", "recall", "agreement")))
+print("Score on %d held-out episodes of %s (actions: %s): F1 %.3f, precision %.3f, recall %.3f, agreement %.3f" % tuple(
+    result[key] for key in ("episodes", "task", "mode", "f1", "precision", "recall", "agreement")))
 PYTHON

@@ -22,6 +22,7 @@ std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
   options.evaluation_episodes = SessionOptions().evaluation_episodes;
+  options.evaluation_mode = SessionOptions().evaluation_mode;
   return options.options().toYaml();
 }
 
@@ -51,6 +52,8 @@ core::OptionSet SessionOptions::options() {
   set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
           "held-out ones that the final score is the mean of");
+  set.addChoice("evaluation_mode", evaluation_mode, {"argmax", "sample", "persistent"},
+                "how the policy chooses its actions in them");
   set.include(policy.options());
   set.include(training.options());
   return set;
@@ -176,6 +179,7 @@ void TrainingSession::finish(const Evaluation& evaluation) {
   auto result = nlohmann::ordered_json::parse(evaluation.toJson());
   result["policy"] = weightsPath();
   result["weights_id"] = weightsId();
+  result["mode"] = options_.evaluation_mode;
   result["training"] = {{"trajectories", trainer_->trajectoriesSeen()},
                         {"elapsed_sec", elapsedSec()},
                         {"options", options_.options().toYaml()}};
@@ -195,7 +199,8 @@ Evaluation runSession(TrainingSession& session, const std::function<void(const P
     report(session.progress());
   }
   RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
-  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
+  const model::ActionChoice choice = model::actionChoiceFromName(session.options().evaluation_mode);
+  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), choice, kHeldOutSeed);
   const Evaluation evaluation =
       evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
         Progress progress = session.progress();

@@ -140,7 +140,7 @@ void TrainerNode::evaluate() {
     stage_done_ = static_cast<double>(evaluation_.outcomes.size()) / episodes;
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
-  play("argmax", learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
+  play(session_->options().evaluation_mode, learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
 }
 
 void TrainerNode::finish() {
