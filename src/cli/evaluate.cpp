@@ -19,7 +19,7 @@ struct EvaluateOptions {
   std::uint64_t seed = learning::kHeldOutSeed;
   std::string json;
   std::string trace;
-  std::string exploration = "argmax";
+  std::string exploration = "sharpened";
 };
 
 void evaluate(const EvaluateOptions& options) {
@@ -66,7 +66,7 @@ void addEvaluate(CLI::App& app) {
                       "write every step as a line of JSON to this file: scene, orientation, request, action, the\n"
                       "expert's action and its cost per requested object (docs/trace.md); -: standard output");
   command->add_option("--exploration", options->exploration, "how a weights file's policy chooses")
-      ->check(CLI::IsMember({"argmax", "sample", "persistent"}))
+      ->check(CLI::IsMember(model::actionChoiceNames()))
       ->capture_default_str();
   command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
   command->callback([options] { evaluate(*options); });

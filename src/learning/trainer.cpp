@@ -27,8 +27,7 @@ core::OptionSet TrainingOptions::options() {
   set.add("soft_labels", soft_labels, 0, 1, "",
           "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
-  set.addChoice("exploration", exploration, {"argmax", "sample", "persistent"},
-                "how rollouts choose among the probabilities");
+  set.addChoice("exploration", exploration, model::actionChoiceNames(), "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
   return set;
 }

@@ -52,7 +52,7 @@ core::OptionSet SessionOptions::options() {
   set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
           "held-out ones that the final score is the mean of");
-  set.addChoice("evaluation_mode", evaluation_mode, {"argmax", "sample", "persistent"},
+  set.addChoice("evaluation_mode", evaluation_mode, model::actionChoiceNames(),
                 "how the policy chooses its actions in them");
   set.include(policy.options());
   set.include(training.options());

@@ -1,5 +1,7 @@
 #include "early_fusion/model/action_choice.h"
 
+#include <algorithm>
+
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/random.h"
 
@@ -7,7 +9,8 @@ namespace early_fusion::model {
 
 namespace {
 
-constexpr int kPersistence = 16;  // steps, on average
+constexpr int kPersistence = 16;    // steps, on average
+constexpr double kSharpness = 1.5;  // power of the probabilities
 
 /// The latest step up to this one at which the random number was drawn anew.
 std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uint32_t step) {
@@ -17,11 +20,18 @@ std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uin
 
 }  // namespace
 
+const std::vector<std::string>& actionChoiceNames() {
+  static const std::vector<std::string> names{"argmax", "sample", "persistent", "sharpened"};
+  return names;
+}
+
 ActionChoice actionChoiceFromName(const std::string& name) {
-  if (name == "argmax") return ActionChoice::kArgmax;
-  if (name == "sample") return ActionChoice::kSample;
-  if (name == "persistent") return ActionChoice::kPersistent;
-  throw core::Error("unknown way to choose actions '" + name + "'; known are argmax, sample, persistent");
+  const std::vector<std::string>& names = actionChoiceNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<ActionChoice>(found - names.begin());
+  std::string known;
+  for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
+  throw core::Error("unknown way to choose actions '" + name + "'; known are " + known);
 }
 
 core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::kActionCount>>& probabilities,
@@ -31,9 +41,11 @@ core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::k
   if (choice == ActionChoice::kArgmax) return core::kAllActions[likeliest];
   const std::uint32_t drawn_at = choice == ActionChoice::kPersistent ? persistentDraw(seed, episode, step) : step;
   core::Random random(seed, {core::kSamplingStream, episode, drawn_at});
-  double left = random.uniform() * probabilities.cast<double>().sum();
+  Eigen::Array<double, 1, core::kActionCount> weights = probabilities.cast<double>();
+  if (choice == ActionChoice::kSharpened) weights = weights.pow(kSharpness);
+  double left = random.uniform() * weights.sum();
   for (int action = 0; action < core::kActionCount; ++action) {
-    left -= probabilities[action];
+    left -= weights[action];
     if (left < 0) return core::kAllActions[action];
   }
   // Rounding left a remainder.

@@ -23,7 +23,7 @@ constexpr int kImageQueue = 30;
 core::OptionSet PolicyNode::Options::options() {
   core::OptionSet set("policy");
   set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
-  set.addChoice("mode", acting.mode, {"argmax", "sample", "persistent"},
+  set.addChoice("mode", acting.mode, model::actionChoiceNames(),
                 "with weights from a file: the likeliest action, or drawn");
   set.add("seed", acting.seed, "of the draws in mode 'sample'");
   set.addChoice("precision", acting.precision, {"auto", "f32", "bf16"},
