@@ -5,6 +5,7 @@
 #include "command.h"
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/trace.h"
+#include "early_fusion/model/action_choice.h"
 #include "named_agent.h"
 
 namespace early_fusion::cli {

@@ -7,6 +7,7 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
+#include "early_fusion/model/action_choice.h"
 
 namespace early_fusion::learning {
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/annotation.h"
 #include "early_fusion/ros/camera_image.h"
 #include "early_fusion/ros/conversions.h"
