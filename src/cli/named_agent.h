@@ -15,7 +15,7 @@ struct NamedAgent {
 };
 
 /// @param name expert, random, idle, or a weights file.
-/// @param exploration argmax or sample, for a weights file.
+/// @param exploration one of model::actionChoiceNames(), for a weights file.
 /// @throws Error when the file is no policy, or knows other items than the world has.
 NamedAgent makeNamedAgent(const std::string& name, const std::string& exploration, std::uint64_t seed,
                           const sim::World& world);

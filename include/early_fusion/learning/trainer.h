@@ -27,7 +27,7 @@ struct TrainingOptions {
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
   double soft_labels = 0;              ///< share of a target that goes to all optimal actions alike, not to the label
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
-  std::string exploration = "sample";  ///< how rollouts choose actions: argmax, sample, persistent or sharpened
+  std::string exploration = "sample";  ///< how rollouts choose: one of model::actionChoiceNames()
   double weight_decay = 0;             ///< decoupled, a step
 
   core::OptionSet options();

@@ -76,7 +76,7 @@ class VisionTrunk {
   };
 
   int pixels() const { return shape_.image_size * shape_.image_size; }
-  /// Convolutions and pooled maps of a block; those of map `convolution` are [firstMap(), firstMap(convolution + 1)).
+  /// Convolutions and pooled maps of a block; convolution c makes the maps [firstMap(c), firstMap(c + 1)).
   int convolutionCount(const ViewBatch& batch, int block) const;
   int mapCount(const ViewBatch& batch, int block) const;
   int firstMap(const ViewBatch& batch, int block, int convolution) const;

@@ -14,7 +14,7 @@ namespace early_fusion::nodes {
 
 /// How a policy acts: what goes with its weights.
 struct Acting {
-  std::string mode = "argmax";     ///< argmax or sample
+  std::string mode = "argmax";     ///< one of model::actionChoiceNames()
   std::uint64_t seed = 0;          ///< of the draws in the modes that draw
   std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor has it natively
 };
