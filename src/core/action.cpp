@@ -1,6 +1,6 @@
 #include "early_fusion/core/action.h"
 
-#include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
 
@@ -14,12 +14,8 @@ constexpr std::array<const char*, kActionCount> kNames = {"PAN_LEFT", "PAN_RIGHT
 const char* actionName(Action action) { return kNames[static_cast<int>(action)]; }
 
 Action actionFromName(const std::string& name) {
-  std::string known;
-  for (Action action : kAllActions) {
-    if (name == actionName(action)) return action;
-    known += std::string(known.empty() ? "" : ", ") + actionName(action);
-  }
-  throw Error("unknown action '" + name + "'; known are " + known);
+  static const std::vector<std::string> names(kNames.begin(), kNames.end());
+  return kAllActions[indexOf(name, names, "action")];
 }
 
 }  // namespace early_fusion::core

@@ -3,15 +3,17 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
+#include <vector>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
 
@@ -95,14 +97,14 @@ std::string resolvePath(const std::string& base_file, const std::string& path) {
 
 std::string shareFolder() {
   const char* chosen = std::getenv("EARLY_FUSION_SHARE");
-  std::string tried;
+  std::vector<std::string> tried;
   for (const char* folder : {chosen, EARLY_FUSION_SOURCE_SHARE, EARLY_FUSION_INSTALL_SHARE}) {
     if (folder == nullptr) continue;
     if (fs::is_directory(fs::path(folder) / "config")) return folder;
-    tried += std::string(tried.empty() ? "" : ", ") + folder;
+    tried.push_back(folder);
     if (folder == chosen) break;
   }
-  throw Error("no config/ folder in " + tried + "; set EARLY_FUSION_SHARE to the package's folder");
+  throw Error("no config/ folder in " + joined(tried) + "; set EARLY_FUSION_SHARE to the package's folder");
 }
 
 std::string findConfig(const std::string& folder, const std::string& name_or_file) {
@@ -111,14 +113,13 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
   const fs::path known_folder = fs::path(shareFolder()) / "config" / folder;
   const fs::path file = known_folder / (name_or_file + ".yaml");
   if (!name_or_file.empty() && fs::exists(file)) return file.string();
-  std::set<std::string> names;
+  std::vector<std::string> known;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(known_folder, error)) {
-    if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+    if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-  throw Error("'" + name_or_file + "' is none of the known " + folder + " (" + known + ") and no .yaml file");
+  std::sort(known.begin(), known.end());
+  throw Error("'" + name_or_file + "' is none of the known " + folder + " (" + joined(known) + ") and no .yaml file");
 }
 
 }  // namespace early_fusion::core

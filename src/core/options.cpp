@@ -8,6 +8,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
 
@@ -28,12 +29,6 @@ T parseNumber(const std::string& text, const char* expected) {
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) throw Error(std::string("is not ") + expected);
   return value;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-  return text;
 }
 
 std::string position(const YAML::Node& node, const std::string& file) {
@@ -116,7 +111,7 @@ void OptionSet::set(const std::string& name, const std::string& text, const std:
   if (option == options_.end()) {
     std::vector<std::string> known;
     for (const Option& candidate : options_) known.push_back(candidate.name);
-    throw Error(source + ": unknown " + title_ + " option '" + name + "'; known are " + joined(known, ", "));
+    throw Error(source + ": unknown " + title_ + " option '" + name + "'; known are " + joined(known));
   }
   try {
     option->set(text);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
 
@@ -22,13 +23,7 @@ const std::string& Vocabulary::name(int item) const {
   return names_[item];
 }
 
-int Vocabulary::index(const std::string& name) const {
-  const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found != names_.end()) return static_cast<int>(found - names_.begin());
-  std::string known;
-  for (const std::string& other : names_) known += (known.empty() ? "" : ", ") + other;
-  throw Error("unknown item '" + name + "'; known are " + known);
-}
+int Vocabulary::index(const std::string& name) const { return indexOf(name, names_, "item"); }
 
 Request Vocabulary::request(const std::vector<std::string>& names) const {
   Request request;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 
 namespace early_fusion::nodes {
 
@@ -124,10 +125,6 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, co
 
 sim::Score score(const EpisodeResult& result) { return {result.precision, result.recall, result.f1}; }
 
-std::string itemList(const std::vector<std::string>& items) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
-  return text.empty() ? "nothing" : text;
-}
+std::string itemList(const std::vector<std::string>& items) { return items.empty() ? "nothing" : core::joined(items); }
 
 }  // namespace early_fusion::nodes

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 #include "urdf_file.h"
 
 namespace early_fusion::sim {
@@ -23,8 +24,7 @@ urdf::JointConstSharedPtr findJoint(const urdf::ModelInterface& model, const std
                                     const std::string& file) {
   const auto found = model.joints_.find(name);
   if (found != model.joints_.end()) return found->second;
-  std::string known;
-  for (const auto& [other, joint] : model.joints_) known += (known.empty() ? "" : ", ") + other;
+  const std::string known = core::joined(core::keys(model.joints_));
   throw core::Error(file + ": no joint '" + name + "'; its joints are: " + (known.empty() ? "none" : known));
 }
 

@@ -5,6 +5,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/core/names.h"
 #include "primitive_mesh.h"
 #include "urdf_file.h"
 
@@ -99,9 +100,8 @@ Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_lin
   }
   const urdf::LinkConstSharedPtr counter = model->getLink(counter_link);
   if (!counter) {
-    std::string known;
-    for (const auto& [name, link] : model->links_) known += (known.empty() ? "" : ", ") + name;
-    throw core::Error(urdf_file + ": no link '" + counter_link + "'; its links are: " + known);
+    throw core::Error(urdf_file + ": no link '" + counter_link +
+                      "'; its links are: " + core::joined(core::keys(model->links_)));
   }
   kitchen.counter_top =
       topOf(*counter, worldFromLink(*model, counter_link, urdf_file), urdf_file + ": link '" + counter_link + "'");

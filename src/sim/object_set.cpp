@@ -2,12 +2,13 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/sim/convex_hull.h"
 
 namespace early_fusion::sim {
@@ -24,13 +25,11 @@ std::string place(const std::string& file, const YAML::Node& node) {
   return file + ":" + std::to_string(node.Mark().line + 1) + ": ";
 }
 
-void checkKeys(const YAML::Node& map, const std::set<std::string>& known, const std::string& file) {
+void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, const std::string& file) {
   for (const auto& entry : map) {
     const std::string key = entry.first.as<std::string>("");
-    if (known.count(key) != 0) continue;
-    std::string list;
-    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    throw core::Error(place(file, entry.first) + "unknown key '" + key + "'; known are " + list);
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw core::Error(place(file, entry.first) + "unknown key '" + key + "'; known are " + core::joined(known));
   }
 }
 
@@ -80,7 +79,7 @@ void checkSize(const TexturedMesh& mesh, const std::string& where) {
 
 Object readObject(const YAML::Node& entry, const std::string& file, int max_triangles) {
   if (!entry.IsMap()) throw core::Error(place(file, entry) + "an object is a map of name, mesh and scale");
-  checkKeys(entry, {"name", "mesh", "scale"}, file);
+  checkKeys(entry, {"mesh", "name", "scale"}, file);
   Object object;
   object.name = readText(entry, "name", file);
   object.mesh_file = core::resolvePath(file, readText(entry, "mesh", file));

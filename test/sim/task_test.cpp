@@ -42,8 +42,8 @@ TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
   const std::string error = errorOf([] { loadTask("harder"); });
-  EXPECT_TRUE(mentions(error, "unknown task 'harder'; known are hard, medium, simple")) << error;
-  EXPECT_TRUE(mentions(errorOf([] { loadTask(""); }), "unknown task ''"));
+  EXPECT_TRUE(mentions(error, "'harder' is none of the known tasks (hard, medium, simple)")) << error;
+  EXPECT_TRUE(mentions(errorOf([] { loadTask(""); }), "'' is none of the known tasks"));
 }
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace early_fusion::core {
+
+/// "mug, bowl, plate".
+std::string joined(const std::vector<std::string>& names, const std::string& separator = ", ");
+
+/// The index of `name` in `known`. @param kind what a name stands for, "item".
+/// @throws Error "unknown item 'cup'; known are mug, bowl, plate".
+int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind);
+
+/// The keys of a map from texts, in its order.
+template <class Map>
+std::vector<std::string> keys(const Map& map) {
+  std::vector<std::string> keys;
+  for (const auto& entry : map) keys.push_back(entry.first);
+  return keys;
+}
+
+}  // namespace early_fusion::core

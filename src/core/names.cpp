@@ -1,0 +1,21 @@
+#include "early_fusion/core/names.h"
+
+#include <algorithm>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::core {
+
+std::string joined(const std::vector<std::string>& names, const std::string& separator) {
+  std::string text;
+  for (const std::string& name : names) text += (&name == &names.front() ? "" : separator) + name;
+  return text;
+}
+
+int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind) {
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) throw Error("unknown " + kind + " '" + name + "'; known are " + joined(known));
+  return static_cast<int>(found - known.begin());
+}
+
+}  // namespace early_fusion::core

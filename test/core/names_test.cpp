@@ -1,0 +1,32 @@
+#include "early_fusion/core/names.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::core {
+namespace {
+
+const std::vector<std::string> kNames = {"mug", "bowl", "plate"};
+
+TEST(Names, AreJoinedInTheirOrder) {
+  EXPECT_EQ(joined(kNames), "mug, bowl, plate");
+  EXPECT_EQ(joined({"", "mug"}, " | "), " | mug");
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(joined(keys(std::map<std::string, int>{{"b", 1}, {"a", 2}})), "a, b");
+}
+
+TEST(Names, AnUnknownOneIsAnErrorThatListsTheKnown) {
+  EXPECT_EQ(indexOf("bowl", kNames, "item"), 1);
+  try {
+    indexOf("cup", kNames, "item");
+    FAIL() << "found";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "unknown item 'cup'; known are mug, bowl, plate");
+  }
+}
+
+}  // namespace
+}  // namespace early_fusion::core
