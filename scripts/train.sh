@@ -27,17 +27,40 @@ if [ -z "${ROS_MASTER_URI:-}" ] || [ "$ROS_MASTER_URI" = http://localhost:11311 
   export ROS_MASTER_URI="http://127.0.0.1:$port"
   port_option=(-p "$port")
 fi
-echo "Training session in $output; watch it from another terminal with"
-echo "  export ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP; . $PWD/devel/setup.sh; rostopic echo /progress"
+cat <<TEXT
+Training session in $output.
+The simulator plays episodes, the policy acts in them, and the trainer labels every step with what an expert would do
+and trains the policy on it, round by round; a line tells how each went. F1 is that of the round's episodes, in which
+the policy still tries things out; at the end it is scored on episodes that it never saw. Watch from another terminal:
+  export ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP; . $PWD/devel/setup.sh; rostopic echo /progress
+TEXT
 roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "$@"
 
 # roslaunch exits with 0 whatever its nodes did: the result file tells.
 [ -f "$output/result.json" ] || { echo "train.sh: the session ended without a result; see the messages above" >&2; exit 1; }
 echo
 echo "Trained weights: $output/weights.safetensors"
-/usr/bin/python3 - "$output/result.json" <<'PYTHON'
+score() {
+  /usr/bin/python3 - "$@" <<'PYTHON'
 import json, sys
 result = json.load(open(sys.argv[1]))
-print("Score on %d held-out episodes of %s (actions: %s): F1 %.3f, precision %.3f, recall %.3f, agreement %.3f" % tuple(
-    result[key] for key in ("episodes", "task", "mode", "f1", "precision", "recall", "agreement")))
+print("%s on %d held-out episodes of %s: F1 %.3f, precision %.3f, recall %.3f, agreement %.3f" % (sys.argv[2], *(
+    result[key] for key in ("episodes", "task", "f1", "precision", "recall", "agreement"))))
 PYTHON
+}
+score "$output/result.json" "Its score"
+
+# How that compares with the policy that ships for the same task and world.
+read -r task episodes < <(/usr/bin/python3 -c '
+import json, sys
+result = json.load(open(sys.argv[1]))
+print(result["task"], result["episodes"])' "$output/result.json")
+shipped="models/$task.safetensors"
+case " $* " in *" world:="*) shipped="" ;; esac
+if [ -f "$shipped" ] && [ "$episodes" -gt 0 ]; then
+  comparison=$(mktemp)
+  trap 'rm -f "$comparison"' EXIT
+  devel/lib/early_fusion/early_fusion evaluate --policy "$shipped" --task "$task" --episodes "$episodes" \
+    --json "$comparison" >/dev/null
+  score "$comparison" "The shipped $shipped"
+fi

@@ -20,13 +20,13 @@ struct EvaluateOptions {
   std::uint64_t seed = learning::kHeldOutSeed;
   std::string json;
   std::string trace;
-  std::string exploration = "sharpened";
+  std::string mode = "argmax";
 };
 
 void evaluate(const EvaluateOptions& options) {
   const auto world = sim::loadWorld(options.world);
   const sim::Task task = sim::loadTask(options.task);
-  NamedAgent named = makeNamedAgent(options.policy, options.exploration, options.seed, *world);
+  NamedAgent named = makeNamedAgent(options.policy, options.mode, options.seed, *world);
   learning::RolloutRunner runner(*world, task, options.seed);
   std::map<std::uint64_t, std::string> traces;  // by episode: several are played at a time
   if (!options.trace.empty()) {
@@ -55,7 +55,7 @@ void addEvaluate(CLI::App& app) {
                          "Score a policy or a baseline on episodes.\n"
                          "Example: early_fusion evaluate --policy expert --task hard --episodes 1000 --json -");
   const auto options = std::make_shared<EvaluateOptions>();
-  command->add_option("--policy", options->policy, "expert, random, idle, or a weights file")->required();
+  command->add_option("--policy", options->policy, "expert, searching, random, idle, or a weights file")->required();
   command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file")->capture_default_str();
   command->add_option("--episodes", options->episodes, "how many")
       ->check(CLI::Range(1, 1000000))
@@ -66,7 +66,7 @@ void addEvaluate(CLI::App& app) {
   command->add_option("--trace", options->trace,
                       "write every step as a line of JSON to this file: scene, orientation, request, action, the\n"
                       "expert's action and its cost per requested object (docs/trace.md); -: standard output");
-  command->add_option("--exploration", options->exploration, "how a weights file's policy chooses")
+  command->add_option("--mode", options->mode, "how a weights file's policy chooses")
       ->check(CLI::IsMember(model::actionChoiceNames()))
       ->capture_default_str();
   command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");

@@ -4,9 +4,10 @@
 
 namespace early_fusion::cli {
 
-NamedAgent makeNamedAgent(const std::string& name, const std::string& exploration, std::uint64_t seed,
+NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std::uint64_t seed,
                           const sim::World& world) {
   if (name == "expert") return {nullptr, learning::makeExpertAgent()};
+  if (name == "searching") return {nullptr, learning::makeSearchingAgent()};
   if (name == "random") return {nullptr, learning::makeRandomAgent(seed)};
   if (name == "idle") return {nullptr, learning::makeIdleAgent()};
   NamedAgent named;
@@ -20,7 +21,7 @@ NamedAgent makeNamedAgent(const std::string& name, const std::string& exploratio
                       " pixels, but the world draws " + std::to_string(world.options.image_size) +
                       "; set the world's image_size");
   }
-  named.agent = learning::makePolicyAgent(*named.policy, model::actionChoiceFromName(exploration), seed);
+  named.agent = learning::makePolicyAgent(*named.policy, model::actionChoiceFromName(mode), seed);
   return named;
 }
 

@@ -14,10 +14,10 @@ struct NamedAgent {
   std::unique_ptr<learning::Agent> agent;
 };
 
-/// @param name expert, random, idle, or a weights file.
-/// @param exploration one of model::actionChoiceNames(), for a weights file.
+/// @param name expert, searching, random, idle, or a weights file.
+/// @param mode one of model::actionChoiceNames(), for a weights file.
 /// @throws Error when the file is no policy, or knows other items than the world has.
-NamedAgent makeNamedAgent(const std::string& name, const std::string& exploration, std::uint64_t seed,
+NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std::uint64_t seed,
                           const sim::World& world);
 
 }  // namespace early_fusion::cli

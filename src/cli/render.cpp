@@ -84,7 +84,9 @@ void addRender(CLI::App& app) {
   command->add_option("--step", options->step, "which step of it")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--policy", options->policy, "who acts until then: expert, random, idle, or a weights file")
+  command
+      ->add_option("--policy", options->policy,
+                   "who acts until then: expert, searching, random, idle, or a weights file")
       ->capture_default_str();
   command->add_option("--size", options->size, "edge of a drawn image [px], a multiple of 16")
       ->check(CLI::Range(16, 4096))

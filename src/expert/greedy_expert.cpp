@@ -13,6 +13,8 @@ using core::Action;
 
 constexpr ActionSet bit(Action action) { return static_cast<ActionSet>(1u << static_cast<int>(action)); }
 
+int lowest(sim::InstanceMask mask) { return __builtin_ctz(mask); }
+
 /// Where several actions are equally good, the first of these is the label.
 constexpr std::array<Action, 6> kLabelOrder = {Action::kCollect,  Action::kRemove, Action::kPanLeft,
                                                Action::kPanRight, Action::kTiltUp, Action::kTiltDown};
@@ -66,42 +68,50 @@ class Searcher {
   int nearest_now_;
 };
 
-bool isWanted(const std::vector<sim::Instance>& instances, std::size_t i, sim::InstanceMask present,
-              const core::Request& request) {
-  return ((present >> i) & 1u) && std::find(request.begin(), request.end(), instances[i].item) != request.end();
-}
-
 Action firstInLabelOrder(ActionSet optimal) {
-  for (Action action : kLabelOrder) {
-    if (contains(optimal, action)) return action;
-  }
-  return Action::kIdle;
+  return *std::find_if(kLabelOrder.begin(), kLabelOrder.end(),
+                       [&](Action action) { return contains(optimal, action); });
 }
 
 }  // namespace
 
-core::Action label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                   sim::Orientation orientation, const core::Request& request, ActionSet* optimal) {
+sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, sim::InstanceMask present,
+                                  const core::Request& request) {
+  sim::InstanceMask wanted = 0;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (std::find(request.begin(), request.end(), instances[i].item) != request.end()) {
+      wanted |= sim::InstanceMask(1) << i;
+    }
+  }
+  return wanted & present;
+}
+
+Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::InstanceMask present,
+               sim::Orientation orientation) {
   const Searcher searcher(cone, present, orientation);
   Search best;
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (isWanted(instances, i, present, request)) searcher.search(static_cast<int>(i), best);
-  }
-  if (best.optimal == 0) best.optimal = bit(Action::kIdle);
-  if (optimal != nullptr) *optimal = best.optimal;
-  return firstInLabelOrder(best.optimal);
+  for (sim::InstanceMask rest = wanted; rest != 0; rest &= rest - 1) searcher.search(lowest(rest), best);
+  if (best.optimal == 0) return {Action::kIdle, bit(Action::kIdle), 0};
+  return {firstInLabelOrder(best.optimal), best.optimal, best.steps};
+}
+
+Label label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
+            sim::Orientation orientation, const core::Request& request) {
+  return labelFor(cone, wantedInstances(instances, present, request), present, orientation);
 }
 
 Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
                 sim::Orientation orientation, const core::Request& request) {
   Decision decision;
-  decision.action = label(cone, instances, present, orientation, request, &decision.optimal);
+  const sim::InstanceMask wanted = wantedInstances(instances, present, request);
+  const Label label = labelFor(cone, wanted, present, orientation);
+  decision.action = label.action;
+  decision.optimal = label.optimal;
   const Searcher searcher(cone, present, orientation);
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (!isWanted(instances, i, present, request)) continue;
+  for (sim::InstanceMask rest = wanted; rest != 0; rest &= rest - 1) {
     Search alone;
-    searcher.search(static_cast<int>(i), alone);
-    if (alone.optimal != 0) decision.costs.push_back({static_cast<int>(i), alone.steps});
+    searcher.search(lowest(rest), alone);
+    if (alone.optimal != 0) decision.costs.push_back({lowest(rest), alone.steps});
   }
   return decision;
 }

@@ -3,7 +3,6 @@
 #include <map>
 
 #include "early_fusion/core/random.h"
-#include "early_fusion/expert/greedy_expert.h"
 
 namespace early_fusion::learning {
 
@@ -65,7 +64,18 @@ std::unique_ptr<Agent> makeExpertAgent() {
   return std::make_unique<SimpleAgent>([](const Situation& situation) {
     const sim::Episode& episode = *situation.state;
     const sim::EpisodeState& state = episode.state();
-    return expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request);
+    return expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request)
+        .action;
+  });
+}
+
+std::unique_ptr<Agent> makeSearchingAgent() {
+  return std::make_unique<SimpleAgent>([](const Situation& situation) {
+    const sim::Episode& episode = *situation.state;
+    const sim::EpisodeState& state = episode.state();
+    return expert::searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation,
+                                  situation.heading, state.request)
+        .action;
   });
 }
 

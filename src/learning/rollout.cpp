@@ -13,10 +13,10 @@ constexpr int kLockstep = 10;
 }  // namespace
 
 struct RolloutRunner::Seat {
-  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number,
+  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number, Teacher teacher,
        sim::Rasterizer& seat_rasterizer)
       : episode(world, task, sim::sampleEpisode(world, task, seed, number)),
-        recorder(seed, number, episode.setup().instances, episode.sharedCone()),
+        recorder(seed, number, episode.setup().instances, episode.sharedCone(), teacher),
         rasterizer(seat_rasterizer) {}
 
   sim::Episode episode;
@@ -25,8 +25,8 @@ struct RolloutRunner::Seat {
   core::Image image;
 };
 
-RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed)
-    : world_(world), task_(task), seed_(seed) {
+RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher)
+    : world_(world), task_(task), seed_(seed), teacher_(teacher) {
   for (int i = 0; i < kLockstep; ++i) rasterizers_.emplace_back(world, world.options.image_size);
 }
 
@@ -64,7 +64,7 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     try {
-      seats[i] = std::make_unique<Seat>(world_, task_, seed_, episodes[i], rasterizers_[i]);
+      seats[i] = std::make_unique<Seat>(world_, task_, seed_, episodes[i], teacher_, rasterizers_[i]);
     } catch (...) {
       errors[i] = std::current_exception();
     }
@@ -80,8 +80,8 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
     for (int i = 0; i < count; ++i) observe(*seats[i], draw);
     for (int i = 0; i < count; ++i) {
       const std::vector<TrajectoryStep>& steps = seats[i]->recorder.trajectory().steps;
-      situations[i] = {episodes[i], &seats[i]->episode, {}, steps.back().repeats};
-      situations[i].observation.request = &steps.back().label.request;
+      situations[i] = {episodes[i], &seats[i]->episode, {}, steps.back().repeats, seats[i]->recorder.heading()};
+      situations[i].observation.request = &steps.back().request;
       for (int age = 0; draw && age < model::kHistory && age <= s; ++age) {
         situations[i].observation.frames[age] = steps[s - age].frame->data();
       }

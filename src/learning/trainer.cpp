@@ -21,8 +21,13 @@ core::OptionSet TrainingOptions::options() {
   set.add("skip_repeats", skip_repeats,
           "leave out steps that showed the policy what the step before did, and that it got right");
   set.add("batch_size", batch_size, 1, 1024, "frames", "in a training step, each with its requests");
-  set.add("requests_per_frame", requests_per_frame, 1, 1 + kOtherRequests, "",
+  set.add("requests_per_frame", requests_per_frame, 1, kRequestsPerFrame, "",
           "that a frame is labelled and learnt for: the policy's own, and others that could have been made there");
+  set.add("vain_collects", vain_collects,
+          "learn also what to do after COLLECT has been tried one move too early and nothing has changed");
+  set.addChoice("teacher", teacher, teacherNames(),
+                "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
+                "not in view");
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
   set.add("soft_labels", soft_labels, 0, 1, "",
@@ -30,6 +35,10 @@ core::OptionSet TrainingOptions::options() {
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
   set.addChoice("exploration", exploration, model::actionChoiceNames(), "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
+  set.add(
+      "averaging", averaging, 0, 0.999999, "",
+      "act with the running mean of the weights and statistics over training steps: the share of a step's mean that "
+      "comes from the step before; 0: with the last ones");
   return set;
 }
 
@@ -37,6 +46,8 @@ namespace {
 
 constexpr char kFirstMoment[] = "checkpoint.adam.first_moment";
 constexpr char kSecondMoment[] = "checkpoint.adam.second_moment";
+constexpr char kLearnerParameters[] = "checkpoint.learner.parameters";  // of the weights before averaging
+constexpr char kLearnerBuffers[] = "checkpoint.learner.buffers";
 constexpr char kEpisodes[] = "checkpoint.window.episodes";  // (trajectories)
 constexpr char kActions[] = "checkpoint.window.actions";    // (trajectories, steps)
 constexpr char kCounters[] = "checkpoint.counters";         // trajectories, new ones, rounds, Adam's steps
@@ -53,8 +64,9 @@ Trainer::Trainer(const model::PolicyOptions& policy, const TrainingOptions& trai
                  const core::Vocabulary& vocabulary, std::uint64_t seed)
     : options_(training),
       seed_(seed),
-      policy_(model::makePolicy(policy, vocabulary, seed)),
-      adam_(policy_->parameters().values().size(), adamOptions(training)) {}
+      learner_(model::makePolicy(policy, vocabulary, seed)),
+      averaged_(training.averaging > 0 ? model::makePolicy(policy, vocabulary, seed) : nullptr),
+      adam_(learner_->parameters().values().size(), adamOptions(training)) {}
 
 void Trainer::add(Trajectory trajectory) {
   window_.push_back(std::move(trajectory));
@@ -80,7 +92,8 @@ std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   for (std::uint32_t t = 0; t < window_.size(); ++t) {
     for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) {
       const TrajectoryStep& step = window_[t].steps[s];
-      const bool skip = options_.skip_repeats && step.repeats && expert::contains(step.label.optimal, step.action);
+      const bool skip =
+          options_.skip_repeats && step.repeats && expert::contains(step.lessons[0].label.optimal, step.action);
       if (!skip) window_frames.push_back({t, s});
     }
   }
@@ -95,11 +108,8 @@ std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   return drawn;
 }
 
-template <class Use>
-void Trainer::forEachLabel(const TrajectoryStep& step, const Use& use) const {
-  use(step.label);
-  const int others = std::min<int>(options_.requests_per_frame - 1, step.others.size());
-  for (int i = 0; i < others; ++i) use(step.others[i]);
+std::size_t Trainer::lessonCount(const TrajectoryStep& step) const {
+  return std::min<std::size_t>(options_.requests_per_frame, step.lessons.size());
 }
 
 std::array<float, core::kActionCount> Trainer::actionWeights() const {
@@ -107,10 +117,8 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
   double total = 0;
   for (const Trajectory& trajectory : window_) {
     for (const TrajectoryStep& step : trajectory.steps) {
-      forEachLabel(step, [&](const Label& label) {
-        counts[static_cast<int>(label.action)] += 1;
-        total += 1;
-      });
+      for (std::size_t i = 0; i < lessonCount(step); ++i) counts[static_cast<int>(step.lessons[i].label.action)] += 1;
+      total += static_cast<double>(lessonCount(step));
     }
   }
   std::array<float, core::kActionCount> weights{};
@@ -126,17 +134,27 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
   for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
     observation.frames[age] = trajectory.steps[index.step - age].frame->data();
   }
-  forEachLabel(trajectory.steps[index.step], [&](const Label& label) {
+  const TrajectoryStep& step = trajectory.steps[index.step];
+  const auto add = [&](const Lesson& lesson) {
     model::Sample sample;
     sample.observation = observation;
-    sample.observation.request = &label.request;
-    sample.weight = action_weights_[static_cast<int>(label.action)];
-    sample.target = target(label);
+    sample.observation.request = &lesson.request;
+    sample.weight = action_weights_[static_cast<int>(lesson.label.action)];
+    sample.target = target(lesson.label);
     batch.push_back(sample);
-  });
+  };
+  for (std::size_t i = 0; i < lessonCount(step); ++i) add(step.lessons[i]);
+  const bool moved = observation.frames[0] != observation.frames[1];
+  if (!options_.vain_collects || !step.out_of_reach || !moved) return;
+  // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
+  if (index.step % 2 == 1) observation.frames[1] = observation.frames[0];
+  observation.frames = {observation.frames[0], observation.frames[0], observation.frames[1]};
+  for (std::size_t i = 0; i < lessonCount(step); ++i) {
+    if (step.lessons[i].label.steps == 2) add(step.lessons[i]);
+  }
 }
 
-std::array<float, core::kActionCount> Trainer::target(const Label& label) const {
+std::array<float, core::kActionCount> Trainer::target(const expert::Label& label) const {
   std::array<float, core::kActionCount> target{};
   int optimal = 0;
   for (core::Action action : core::kAllActions) optimal += expert::contains(label.optimal, action);
@@ -172,20 +190,36 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
     batch.clear();
     for (std::size_t i = first; i < last; ++i) addSamples(frames[i], batch);
     const std::uint64_t dropout_seed = core::Random(seed_, {core::kDropoutStream, rounds_, first}).next();
-    statistics.loss += policy_->lossAndGradients(batch, dropout_seed);
-    adam_.step(policy_->parameters().values(), policy_->parameters().gradients(), statistics.learning_rate);
-    policy_->parametersChanged();
+    statistics.loss += learner_->lossAndGradients(batch, dropout_seed);
+    adam_.step(learner_->parameters().values(), learner_->parameters().gradients(), statistics.learning_rate);
+    learner_->parametersChanged();
+    if (averaged_) average();
     ++steps;
     if (progress) progress(static_cast<double>(last) / frames.size());
   }
+  if (averaged_) averaged_->parametersChanged();
   statistics.loss /= std::max<std::uint64_t>(steps, 1);
   ++rounds_;
   new_trajectories_ = 0;
   return statistics;
 }
 
+/// Over few steps at first: what training began with is soon forgotten.
+void Trainer::average() {
+  const auto steps = static_cast<double>(adam_.stepCount());
+  const auto rest = static_cast<float>(1 - std::min(options_.averaging, steps / (steps + 10)));
+  nn::Parameters& mean = averaged_->parameters();
+  const nn::Parameters& last = learner_->parameters();
+  mean.values() += rest * (last.values() - mean.values());
+  mean.buffers() += rest * (last.buffers() - mean.buffers());
+}
+
 nn::WeightsFile Trainer::save() const {
-  nn::WeightsFile file = model::savePolicy(*policy_, {});
+  nn::WeightsFile file = model::savePolicy(policy(), {});
+  if (averaged_) {
+    file.tensors[kLearnerParameters] = storeFloats(learner_->parameters().values());
+    file.tensors[kLearnerBuffers] = storeFloats(learner_->parameters().buffers());
+  }
   const auto steps = window_.empty() ? 0 : static_cast<std::int64_t>(window_.front().steps.size());
   std::vector<std::int64_t> episodes;
   std::vector<std::uint8_t> actions;
@@ -207,8 +241,15 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   if (counters.size() != 4 || *std::min_element(counters.begin(), counters.end()) < 0) {
     throw core::Error(source + ": tensor " + kCounters + " should hold 4 counts; the file is damaged");
   }
-  policy_ = model::loadPolicy(file, source, policy_->options().precision);
-  const Eigen::Index size = policy_->parameters().values().size();
+  std::unique_ptr<model::GoalPolicy>& acting = averaged_ ? averaged_ : learner_;
+  acting = model::loadPolicy(file, source, acting->options().precision);
+  const Eigen::Index size = acting->parameters().values().size();
+  if (averaged_) {
+    nn::Parameters& last = learner_->parameters();
+    last.values() = loadFloats(file, kLearnerParameters, size, source);
+    last.buffers() = loadFloats(file, kLearnerBuffers, last.buffers().size(), source);
+    learner_->parametersChanged();
+  }
   adam_.restore(counters[3], loadFloats(file, kFirstMoment, size, source),
                 loadFloats(file, kSecondMoment, size, source));
   trajectories_seen_ = counters[0];

@@ -23,7 +23,6 @@ std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
   options.evaluation_episodes = SessionOptions().evaluation_episodes;
-  options.evaluation_mode = SessionOptions().evaluation_mode;
   return options.options().toYaml();
 }
 
@@ -53,8 +52,6 @@ core::OptionSet SessionOptions::options() {
   set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
           "held-out ones that the final score is the mean of");
-  set.addChoice("evaluation_mode", evaluation_mode, model::actionChoiceNames(),
-                "how the policy chooses its actions in them");
   set.include(policy.options());
   set.include(training.options());
   return set;
@@ -100,7 +97,7 @@ void TrainingSession::resume() {
       [this](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
         std::vector<Trajectory> window;
         const std::unique_ptr<Agent> agent = makeReplayAgent(episodes, actions);
-        RolloutRunner(*world_, task_, options_.seed)
+        RolloutRunner(*world_, task_, options_.seed, teacherFromName(options_.training.teacher))
             .run({episodes.begin(), episodes.end()}, *agent, true,
                  [&](Trajectory trajectory) { window.push_back(std::move(trajectory)); });
         return window;
@@ -180,7 +177,6 @@ void TrainingSession::finish(const Evaluation& evaluation) {
   auto result = nlohmann::ordered_json::parse(evaluation.toJson());
   result["policy"] = weightsPath();
   result["weights_id"] = weightsId();
-  result["mode"] = options_.evaluation_mode;
   result["training"] = {{"trajectories", trainer_->trajectoriesSeen()},
                         {"elapsed_sec", elapsedSec()},
                         {"options", options_.options().toYaml()}};
@@ -190,7 +186,8 @@ void TrainingSession::finish(const Evaluation& evaluation) {
 
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
-  RolloutRunner runner(session.world(), session.task(), session.options().seed);
+  RolloutRunner runner(session.world(), session.task(), session.options().seed,
+                       teacherFromName(trainer.options().teacher));
   const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
     const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);
@@ -200,8 +197,7 @@ Evaluation runSession(TrainingSession& session, const std::function<void(const P
     report(session.progress());
   }
   RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
-  const model::ActionChoice choice = model::actionChoiceFromName(session.options().evaluation_mode);
-  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), choice, kHeldOutSeed);
+  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
   const Evaluation evaluation =
       evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
         Progress progress = session.progress();

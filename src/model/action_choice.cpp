@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
 
 namespace early_fusion::model {
 
 namespace {
 
-constexpr int kPersistence = 16;    // steps, on average
-constexpr double kSharpness = 1.5;  // power of the probabilities
+constexpr int kPersistence = 16;  // steps, on average
 
 /// The latest step up to this one at which the random number was drawn anew.
 std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uint32_t step) {
@@ -21,17 +20,12 @@ std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uin
 }  // namespace
 
 const std::vector<std::string>& actionChoiceNames() {
-  static const std::vector<std::string> names{"argmax", "sample", "persistent", "sharpened"};
+  static const std::vector<std::string> names{"argmax", "sample", "persistent"};
   return names;
 }
 
 ActionChoice actionChoiceFromName(const std::string& name) {
-  const std::vector<std::string>& names = actionChoiceNames();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<ActionChoice>(found - names.begin());
-  std::string known;
-  for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
-  throw core::Error("unknown way to choose actions '" + name + "'; known are " + known);
+  return static_cast<ActionChoice>(core::indexOf(name, actionChoiceNames(), "way to choose actions"));
 }
 
 core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::kActionCount>>& probabilities,
@@ -41,11 +35,9 @@ core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::k
   if (choice == ActionChoice::kArgmax) return core::kAllActions[likeliest];
   const std::uint32_t drawn_at = choice == ActionChoice::kPersistent ? persistentDraw(seed, episode, step) : step;
   core::Random random(seed, {core::kSamplingStream, episode, drawn_at});
-  Eigen::Array<double, 1, core::kActionCount> weights = probabilities.cast<double>();
-  if (choice == ActionChoice::kSharpened) weights = weights.pow(kSharpness);
-  double left = random.uniform() * weights.sum();
+  double left = random.uniform() * probabilities.cast<double>().sum();
   for (int action = 0; action < core::kActionCount; ++action) {
-    left -= weights[action];
+    left -= probabilities[action];
     if (left < 0) return core::kAllActions[action];
   }
   // Rounding left a remainder.

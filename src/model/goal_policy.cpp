@@ -11,7 +11,7 @@ namespace early_fusion::model {
 
 namespace {
 
-constexpr const char* kFormat = "early_fusion/1";
+constexpr const char* kFormat = "early_fusion/2";
 constexpr int kWidestRegister = 16;  // channels come in multiples of it
 
 void require(bool holds, const std::string& name, const std::string& value, const std::string& allowed) {

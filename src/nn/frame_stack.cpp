@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
 
 namespace early_fusion::nn {
 
@@ -10,21 +9,16 @@ namespace {
 
 constexpr int kRun = 128;  // pixels at a time, whose numbers stay in the innermost cache
 
-float aboutZero(std::uint8_t byte) { return static_cast<float>(byte - kMiddleByte); }
+constexpr std::uint8_t kBlack[3 * kRun] = {};
 
-/// bytes (count) -> numbers, exactly.
-void convert(const std::uint8_t* bytes, int count, float* numbers) {
-  for (int i = 0; i < count; ++i) numbers[i] = aboutZero(bytes[i]);
-}
+void store(int difference, float& number) { number = static_cast<float>(difference); }
 
-/// Such numbers have no more significant bits than a bfloat16: nothing is rounded.
-void convert(const std::uint8_t* bytes, int count, bfloat16* numbers) {
-  for (int i = 0; i < count; ++i) {
-    const float number = aboutZero(bytes[i]);
-    std::uint32_t bits;
-    std::memcpy(&bits, &number, sizeof bits);
-    numbers[i].bits = static_cast<std::uint16_t>(bits >> 16);
-  }
+/// A difference of bytes has no more significant bits than a bfloat16: nothing is rounded.
+void store(int difference, bfloat16& number) {
+  const auto exact = static_cast<float>(difference);
+  std::uint32_t bits;
+  std::memcpy(&bits, &exact, sizeof bits);
+  number.bits = static_cast<std::uint16_t>(bits >> 16);
 }
 
 template <class T, int kCopied>
@@ -49,12 +43,14 @@ void interleave(const T (&rows)[kStackedFrames][3 * kRun + 1], int count, T* x) 
 
 template <class T>
 void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x) {
-  T rows[kStackedFrames][3 * kRun + 1];
-  for (T(&row)[3 * kRun + 1] : rows) std::fill(std::begin(row), std::end(row), fromFloat<T>(aboutZero(0)));
+  T rows[kStackedFrames][3 * kRun + 1] = {};
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);
-    for (int f = 0; f < kStackedFrames; ++f) {
-      if (frames[f] != nullptr) convert(frames[f] + 3 * start, 3 * count, rows[f]);
+    const std::uint8_t* bytes[kStackedFrames];
+    for (int f = 0; f < kStackedFrames; ++f) bytes[f] = frames[f] != nullptr ? frames[f] + 3 * start : kBlack;
+    for (int i = 0; i < 3 * count; ++i) store(bytes[0][i] - kMiddleByte, rows[0][i]);
+    for (int f = 1; f < kStackedFrames; ++f) {
+      for (int i = 0; i < 3 * count; ++i) store(bytes[f - 1][i] - bytes[f][i], rows[f][i]);
     }
     interleave(rows, count, x + std::size_t(start) * kStoredImageChannels<T>);
   }

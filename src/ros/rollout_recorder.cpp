@@ -34,7 +34,8 @@ void RolloutRecorder::begin(const Scene& scene) {
   SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
   sim::EpisodeSetup setup{std::move(start.instances), std::move(start.state.request), start.state.orientation};
   sim::Episode episode(world_, task_, std::move(setup));
-  learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone());
+  learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),
+                                        plan_.teacher);
   recording_.emplace(Recording{scene.episode, std::move(episode), std::move(recorder), ::ros::Time(), ""});
 }
 

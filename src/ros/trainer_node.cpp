@@ -89,6 +89,7 @@ void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_
   plan.episodes = static_cast<std::uint32_t>(episodes);
   plan.weights = weights_id_;
   plan.mode = mode;
+  plan.teacher = learning::teacherFromName(session_->options().training.teacher);
   client_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
@@ -140,7 +141,7 @@ void TrainerNode::evaluate() {
     stage_done_ = static_cast<double>(evaluation_.outcomes.size()) / episodes;
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
-  play(session_->options().evaluation_mode, learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
+  play("argmax", learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
 }
 
 void TrainerNode::finish() {

@@ -57,7 +57,7 @@ Statistics play(const sim::World& world, const sim::Task& task) {
     while (!episode.finished()) {
       const sim::EpisodeState& state = episode.state();
       const core::Action action =
-          label(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request);
+          label(episode.cone(), episode.setup().instances, state.present, state.orientation, state.request).action;
       statistics.idle += action == core::Action::kIdle;
       statistics.removed += action == core::Action::kRemove;
       ++statistics.steps;

@@ -214,11 +214,11 @@ TEST(GreedyExpert, LabelsAsItDecides) {
       const State state = randomState(scene, random);
       const core::Request request = {random.below(4)};
       const Decision decision = scene.decide(state, request);
-      ActionSet optimal = 0;
-      EXPECT_EQ(label(scene.cone, scene.instances, state.present, state.orientation, request, &optimal),
-                decision.action);
-      EXPECT_EQ(label(scene.cone, scene.instances, state.present, state.orientation, request), decision.action);
-      EXPECT_EQ(optimal, decision.optimal);
+      const Label labelled = label(scene.cone, scene.instances, state.present, state.orientation, request);
+      EXPECT_EQ(labelled.action, decision.action);
+      EXPECT_EQ(labelled.optimal, decision.optimal);
+      const int cheapest = scene.cheapest(state, request);
+      EXPECT_EQ(labelled.steps, cheapest == INT_MAX ? 0 : cheapest);
     }
   }
 }
@@ -230,8 +230,7 @@ TEST(GreedyExpert, LabelsWithoutAllocating) {
   const State state = randomState(scene, random);
   const long before = allocations;
   for (int index = 0; index < scene.cone.lattice().size(); ++index) {
-    ActionSet optimal = 0;
-    label(scene.cone, scene.instances, state.present, scene.cone.lattice().at(index), request, &optimal);
+    label(scene.cone, scene.instances, state.present, scene.cone.lattice().at(index), request);
   }
   EXPECT_EQ(allocations, before);
   EXPECT_FALSE(scene.decide(state, request).costs.empty());

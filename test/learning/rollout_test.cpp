@@ -30,12 +30,12 @@ void expectSame(const Trajectory& a, const Trajectory& b) {
     EXPECT_EQ(*a.steps[s].frame, *b.steps[s].frame);
     EXPECT_EQ(a.steps[s].repeats, b.steps[s].repeats);
     EXPECT_EQ(a.steps[s].action, b.steps[s].action);
-    EXPECT_EQ(a.steps[s].label.request, b.steps[s].label.request);
+    EXPECT_EQ(a.steps[s].request, b.steps[s].request);
     EXPECT_EQ(a.steps[s].label.action, b.steps[s].label.action);
-    ASSERT_EQ(a.steps[s].others.size(), b.steps[s].others.size());
-    for (std::size_t i = 0; i < a.steps[s].others.size(); ++i) {
-      EXPECT_EQ(a.steps[s].others[i].request, b.steps[s].others[i].request);
-      EXPECT_EQ(a.steps[s].others[i].action, b.steps[s].others[i].action);
+    ASSERT_EQ(a.steps[s].lessons.size(), b.steps[s].lessons.size());
+    for (std::size_t i = 0; i < a.steps[s].lessons.size(); ++i) {
+      EXPECT_EQ(a.steps[s].lessons[i].request, b.steps[s].lessons[i].request);
+      EXPECT_EQ(a.steps[s].lessons[i].label.action, b.steps[s].lessons[i].label.action);
     }
   }
 }

@@ -90,16 +90,43 @@ TEST(Trainer, TheSameSeedGivesTheSameWeights) {
 }
 
 TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
-  const auto whole = makeTrainer();
-  runRound(*whole);
-  runRound(*whole);
-  const nn::WeightsFile saved = nn::WeightsFile::parse(whole->save().serialize(), "checkpoint");
-  const auto resumed = makeTrainer();
-  resumed->restore(saved, "checkpoint", replay);
-  while (!whole->finished()) EXPECT_EQ(runRound(*whole).loss, runRound(*resumed).loss);
-  EXPECT_TRUE(resumed->finished());
-  EXPECT_EQ(whole->policy().parameters().values(), resumed->policy().parameters().values());
-  EXPECT_EQ(whole->policy().parameters().buffers(), resumed->policy().parameters().buffers());
+  for (const double averaging : {0.0, 0.9}) {
+    TrainingOptions options = tinyTraining();
+    options.averaging = averaging;
+    const auto whole = makeTrainer(options);
+    runRound(*whole);
+    runRound(*whole);
+    const nn::WeightsFile saved = nn::WeightsFile::parse(whole->save().serialize(), "checkpoint");
+    const auto resumed = makeTrainer(options);
+    resumed->restore(saved, "checkpoint", replay);
+    while (!whole->finished()) EXPECT_EQ(runRound(*whole).loss, runRound(*resumed).loss);
+    EXPECT_TRUE(resumed->finished());
+    EXPECT_EQ(whole->policy().parameters().values(), resumed->policy().parameters().values());
+    EXPECT_EQ(whole->policy().parameters().buffers(), resumed->policy().parameters().buffers());
+  }
+}
+
+TEST(Trainer, ActsWithTheRunningMeanOfTheWeights) {
+  const auto last = makeTrainer();
+  TrainingOptions options = tinyTraining();
+  options.averaging = 0.75;
+  const auto mean = makeTrainer(options);
+  Eigen::VectorXf values = mean->policy().parameters().values(), buffers = mean->policy().parameters().buffers();
+  int step = 0;
+  for (int round = 0; round < 5; ++round) {
+    while (!last->roundDue()) last->add(syntheticTrajectory(last->trajectoriesSeen()));
+    last->trainRound([&](double) {
+      ++step;
+      const float share = std::min(0.75f, step / (step + 10.f));
+      values = share * values + (1 - share) * last->policy().parameters().values();
+      buffers = share * buffers + (1 - share) * last->policy().parameters().buffers();
+    });
+    runRound(*mean);
+  }
+  EXPECT_GT(step, 30) << "the share is to reach its end";
+  EXPECT_LT((mean->policy().parameters().values() - values).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT((mean->policy().parameters().buffers() - buffers).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_GT((values - last->policy().parameters().values()).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 TEST(Trainer, LearningRateFallsAlongACosineBetweenTheTwoRates) {
@@ -129,8 +156,8 @@ double lossWithRepeats(core::Action taken) {
         TrajectoryStep& step = trajectory.steps[s];
         step.repeats = s % 2 == 1;
         step.action = taken;
-        step.label = {{0}, step.repeats ? core::Action::kIdle : core::Action::kCollect, {}};
-        step.label.optimal = static_cast<expert::ActionSet>(1 << static_cast<int>(step.label.action));
+        const core::Action action = step.repeats ? core::Action::kIdle : core::Action::kCollect;
+        step.lessons = {{{0}, {action, static_cast<expert::ActionSet>(1 << static_cast<int>(action)), 0}}};
       }
       trainer->add(std::move(trajectory));
     }
@@ -153,14 +180,56 @@ TEST(Trainer, LearnsEveryRequestOfAFrame) {
     while (!trainer->roundDue()) {
       Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
       for (TrajectoryStep& step : trajectory.steps) {
-        step.label = {{0}, core::Action::kCollect, 1 << 4};
-        step.others = {{{1}, core::Action::kIdle, 1 << 6}};
+        step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}, {{1}, {core::Action::kIdle, 1 << 6, 0}}};
       }
       trainer->add(std::move(trajectory));
     }
     last = trainer->trainRound().loss;
   }
   EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
+}
+
+/// Trains where, at random, half of the frames ask for COLLECT and half for one more PAN_LEFT before it.
+/// @return the mean probability of PAN_LEFT when the policy sees one of those frames three times.
+double panAfterVainCollects(bool vain_collects) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = 400;
+  options.requests_per_frame = 1;
+  options.vain_collects = vain_collects;
+  const auto trainer = makeTrainer(options);
+  while (!trainer->finished()) {
+    while (!trainer->roundDue()) {
+      Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
+      for (TrajectoryStep& step : trajectory.steps) {
+        step.out_of_reach = step.action < core::Action::kCollect;
+        step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}};
+        if (step.out_of_reach) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
+      }
+      trainer->add(std::move(trajectory));
+    }
+    trainer->trainRound();
+  }
+  const core::Request request = {0};
+  double sum = 0;
+  int count = 0;
+  for (std::uint64_t episode = 1000; episode < 1020; ++episode) {
+    const Trajectory trajectory = syntheticTrajectory(episode);
+    for (const TrajectoryStep& step : trajectory.steps) {
+      model::Observation again;
+      again.frames.fill(step.frame->data());
+      again.request = &request;
+      model::Probabilities probabilities;
+      trainer->policy().predict({again}, probabilities);
+      sum += probabilities(0, static_cast<int>(core::Action::kPanLeft));
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+TEST(Trainer, LearnsNotToRepeatACollectThatChangedNothing) {
+  EXPECT_GT(panAfterVainCollects(true), 0.85);
+  EXPECT_LT(panAfterVainCollects(false), 0.75);
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "early_fusion/core/error.h"
 #include "shipped_world.h"
 
 namespace early_fusion::learning {
@@ -27,11 +27,14 @@ class TrajectoryRecorderTest : public testing::Test {
       : task_(sim::loadTask("hard")),
         episode_(shippedWorld(), task_, sim::sampleEpisode(shippedWorld(), task_, 2, 6)) {}
 
+  /// Another one at every step.
+  static std::vector<std::uint8_t> frameAt(int step) { return {1, 2, static_cast<std::uint8_t>(step)}; }
+
   Trajectory recordAll(std::uint64_t seed) {
     TrajectoryRecorder recorder(seed, 6, episode_.setup().instances, episode_.sharedCone());
     sim::Episode episode = episode_;
     while (!episode.finished()) {
-      const core::Action action = recorder.record(episode.state(), {1, 2, 3}).label.action;
+      const core::Action action = recorder.record(episode.state(), frameAt(episode.state().step)).label.action;
       recorder.setAction(action);
       episode.step(action);
     }
@@ -42,17 +45,19 @@ class TrajectoryRecorderTest : public testing::Test {
   sim::Episode episode_;
 };
 
-TEST_F(TrajectoryRecorderTest, OtherRequestsAskForWhatIsThereAndHaveTheExpertsLabel) {
+TEST_F(TrajectoryRecorderTest, LessonsAskForWhatIsThereAndHaveTheExpertsLabel) {
   const Trajectory trajectory = recordAll(1);
   ASSERT_EQ(trajectory.steps.size(), 48u);
   sim::Episode episode = episode_;
   int differing = 0;
   for (const TrajectoryStep& step : trajectory.steps) {
     const sim::EpisodeState& state = episode.state();
-    EXPECT_LE(step.others.size(), std::size_t(kOtherRequests));
-    std::set<core::Request> requests{step.label.request};
-    for (const Label& other : step.others) {
-      const core::Request& request = other.request;
+    EXPECT_LE(step.lessons.size(), std::size_t(kRequestsPerFrame));
+    EXPECT_EQ(step.lessons.front().request, step.request);
+    EXPECT_EQ(step.lessons.front().label.action, step.label.action);
+    std::set<core::Request> requests{step.request};
+    for (auto lesson = step.lessons.begin() + 1; lesson != step.lessons.end(); ++lesson) {
+      const core::Request& request = lesson->request;
       EXPECT_TRUE(requests.insert(request).second) << "the same request twice at step " << state.step;
       EXPECT_GE(request.size(), 1u);
       EXPECT_LE(request.size(), 3u);
@@ -64,51 +69,59 @@ TEST_F(TrajectoryRecorderTest, OtherRequestsAskForWhatIsThereAndHaveTheExpertsLa
         }
         EXPECT_LE(std::count(request.begin(), request.end(), item), there);
       }
-      EXPECT_EQ(other.action,
-                expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request));
-      differing += other.action != step.label.action;
+      EXPECT_EQ(
+          lesson->label.action,
+          expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request).action);
+      differing += lesson->label.action != step.label.action;
     }
     episode.step(step.action);
   }
   EXPECT_GT(differing, 50);
 }
 
-// Whoever had looked for what was in the picture before would not have turned away from it.
-TEST_F(TrajectoryRecorderTest, OtherRequestsNeverAskForWhatWasSeenAndHasLeftThePicture) {
-  const Trajectory trajectory = recordAll(1);
-  sim::Episode episode = episode_;
+TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCome) {
+  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone(), Teacher::kSearching);
+  sim::EpisodeSetup setup = episode_.setup();
+  setup.orientation = {6, 12};  // the right is out of view
+  sim::Episode episode(shippedWorld(), task_, setup);
   const std::vector<sim::Instance>& instances = episode.setup().instances;
-  std::set<int> seen_items;
-  int unseen_asked = 0;
-  for (const TrajectoryStep& step : trajectory.steps) {
+  using core::Action;
+  using expert::Heading;
+  const std::vector<std::pair<Action, Heading>> moves = {
+      {Action::kPanLeft, Heading::kNone},  {Action::kTiltUp, Heading::kLeft},  {Action::kTiltUp, Heading::kLeft},
+      {Action::kPanRight, Heading::kNone}, {Action::kIdle, Heading::kRight},   {Action::kPanLeft, Heading::kRight},
+      {Action::kIdle, Heading::kLeft},     {Action::kCollect, Heading::kLeft}, {Action::kIdle, Heading::kNone}};
+  int searched = 0;
+  for (const auto& [action, heading] : moves) {
     const sim::EpisodeState& state = episode.state();
-    std::set<int> in_picture;
-    for (std::size_t i = 0; i < instances.size(); ++i) {
-      if (!((state.present >> i) & 1)) continue;
-      const Eigen::Vector3d from_camera = shippedWorld().rig.worldFromCamera(state.orientation).inverse() *
-                                          sim::worldFromObject(shippedWorld(), instances[i]).translation();
-      const double off_axis_rad = std::max(std::abs(std::atan2(from_camera.x(), from_camera.z())),
-                                           std::abs(std::atan2(from_camera.y(), from_camera.z())));
-      if (off_axis_rad < 0.6) in_picture.insert(instances[i].item);  // some degrees beyond the picture's edge
-      if (off_axis_rad < 0.3) seen_items.insert(instances[i].item);  // well inside it
+    const TrajectoryStep& step = recorder.record(state, frameAt(state.step));
+    EXPECT_EQ(recorder.heading(), heading) << "step " << state.step;
+    EXPECT_EQ(step.label.action,
+              expert::label(episode.cone(), instances, state.present, state.orientation, state.request).action);
+    for (const Lesson& lesson : step.lessons) {
+      EXPECT_EQ(lesson.label.action, expert::searchingLabel(episode.cone(), instances, state.present, state.orientation,
+                                                            heading, lesson.request)
+                                         .action);
+      searched += lesson.label.action !=
+                  expert::label(episode.cone(), instances, state.present, state.orientation, lesson.request).action;
     }
-    for (const Label& other : step.others) {
-      for (int item : other.request) {
-        const bool visible = in_picture.count(item) > 0;
-        EXPECT_TRUE(visible || seen_items.count(item) == 0) << "step " << state.step << ", item " << item;
-        unseen_asked += !visible;
-      }
-    }
-    episode.step(step.action);
+    recorder.setAction(action);
+    episode.step(action);
   }
-  EXPECT_GT(unseen_asked, 0);
+  EXPECT_GT(searched, 0) << "the two teachers are to differ";
 }
 
-TEST_F(TrajectoryRecorderTest, OtherRequestsDependOnSeedEpisodeAndStepAlone) {
+TEST(Teacher, HasAName) {
+  EXPECT_EQ(teacherFromName("greedy"), Teacher::kGreedy);
+  EXPECT_EQ(teacherFromName("searching"), Teacher::kSearching);
+  EXPECT_THROW(teacherFromName("wise"), core::Error);
+}
+
+TEST_F(TrajectoryRecorderTest, RequestsDependOnSeedEpisodeAndStepAlone) {
   const Trajectory a = recordAll(1), b = recordAll(1), c = recordAll(2);
   const auto requests = [](const TrajectoryStep& step) {
     std::vector<core::Request> all;
-    for (const Label& other : step.others) all.push_back(other.request);
+    for (const Lesson& lesson : step.lessons) all.push_back(lesson.request);
     return all;
   };
   int differing = 0;
@@ -117,6 +130,17 @@ TEST_F(TrajectoryRecorderTest, OtherRequestsDependOnSeedEpisodeAndStepAlone) {
     differing += requests(a.steps[s]) != requests(c.steps[s]);
   }
   EXPECT_GT(differing, 10);
+}
+
+TEST_F(TrajectoryRecorderTest, WhereThePictureStaysTheSameThereIsNoLessonForAnotherRequest) {
+  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+  sim::EpisodeState state = episode_.state();
+  EXPECT_GT(recorder.record(state, frameAt(0)).lessons.size(), 1u);
+  ++state.step;
+  EXPECT_EQ(recorder.record(state, frameAt(0)).lessons.size(), 1u);
+  EXPECT_EQ(recorder.trajectory().steps.back().lessons.front().request, state.request);
+  ++state.step;
+  EXPECT_GT(recorder.record(state, frameAt(1)).lessons.size(), 1u);
 }
 
 TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
@@ -145,7 +169,7 @@ TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
 TEST_F(TrajectoryRecorderTest, KeepsScoreFramesAndEpisode) {
   const Trajectory trajectory = recordAll(1);
   EXPECT_EQ(trajectory.episode, 6u);
-  EXPECT_EQ(*trajectory.steps[10].frame, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(*trajectory.steps[10].frame, frameAt(10));
   EXPECT_GT(trajectory.score.f1, 0);
   EXPECT_DOUBLE_EQ(trajectory.agreement(), 1.0);
 }

@@ -51,20 +51,6 @@ TEST(ActionChoice, PersistentDrawsDoTooButKeepToOneActionForAWhile) {
   EXPECT_LT(changes, 480);  // 4800 / 16 new numbers and 100 episodes, most of which change the action
 }
 
-TEST(ActionChoice, SharpenedDrawsFavourTheLikelyAndNeverTheImpossible) {
-  constexpr int kDraws = 20000;
-  std::array<int, core::kActionCount> counts{};
-  for (int i = 0; i < kDraws; ++i) {
-    ++counts[static_cast<int>(chooseAction(someProbabilities(), ActionChoice::kSharpened, 7, i / 48, i % 48))];
-  }
-  const Eigen::Array<double, 1, core::kActionCount> powers =
-      someProbabilities().cast<double>().array() * someProbabilities().cast<double>().array().sqrt();
-  for (int k = 0; k < core::kActionCount; ++k) {
-    const double p = powers[k] / powers.sum();
-    EXPECT_NEAR(double(counts[k]) / kDraws, p, 4 * std::sqrt(p * (1 - p) / kDraws)) << "action " << k;
-  }
-}
-
 TEST(ActionChoice, ADrawIsDecidedBySeedEpisodeAndStep) {
   int differences = 0;
   for (std::uint32_t step = 0; step < 100; ++step) {
@@ -83,8 +69,7 @@ TEST(ActionChoice, NamesItsWays) {
   EXPECT_EQ(actionChoiceFromName("argmax"), ActionChoice::kArgmax);
   EXPECT_EQ(actionChoiceFromName("sample"), ActionChoice::kSample);
   EXPECT_EQ(actionChoiceFromName("persistent"), ActionChoice::kPersistent);
-  EXPECT_EQ(actionChoiceFromName("sharpened"), ActionChoice::kSharpened);
-  EXPECT_EQ(actionChoiceNames().size(), 4u);
+  EXPECT_EQ(actionChoiceNames().size(), 3u);
   EXPECT_THROW(actionChoiceFromName("greedy"), core::Error);
 }
 

@@ -131,7 +131,7 @@ TEST_P(LibtorchParity, LearnsAlongTheSameLosses) {
     policy->parametersChanged();
     losses.push_back(loss);
     // Rounding errors grow from step to step.
-    EXPECT_NEAR(loss, expected.item<double>(), 2e-6 + 2e-5 * step) << "step " << step;
+    EXPECT_NEAR(loss, expected.item<double>(), 2e-6 + 4e-5 * step) << "step " << step;
   }
   EXPECT_LT(losses.back(), losses.front() - 0.01);
 }

@@ -55,17 +55,22 @@ struct TorchEarlyFusion : torch::nn::Module {
 struct TorchBatch {
   TorchBatch(const std::vector<Sample>& samples, int image_size, int items) {
     const std::int64_t n = static_cast<std::int64_t>(samples.size());
-    images = torch::full({n, 9, image_size, image_size}, -2.f);  // black
+    images = torch::zeros({n, 9, image_size, image_size});
     counts = torch::zeros({n, items});
     targets = torch::zeros({n, core::kActionCount});
     weights = torch::zeros({n});
     for (std::int64_t i = 0; i < n; ++i) {
+      torch::Tensor newer = torch::full({3, image_size, image_size}, 128.f);
       for (int f = 0; f < kHistory; ++f) {
         const std::uint8_t* bytes = samples[i].observation.frames[f];
-        if (bytes == nullptr) continue;
-        const torch::Tensor frame =
-            torch::from_blob(const_cast<std::uint8_t*>(bytes), {image_size, image_size, 3}, torch::kUInt8);
-        images[i].slice(0, 3 * f, 3 * f + 3).copy_((frame.permute({2, 0, 1}).to(torch::kFloat) - 128) / 64);
+        torch::Tensor frame = torch::zeros({3, image_size, image_size});  // black
+        if (bytes != nullptr) {
+          frame = torch::from_blob(const_cast<std::uint8_t*>(bytes), {image_size, image_size, 3}, torch::kUInt8)
+                      .permute({2, 0, 1})
+                      .to(torch::kFloat);
+        }
+        images[i].slice(0, 3 * f, 3 * f + 3).copy_((f == 0 ? frame - newer : newer - frame) / 64);
+        newer = frame;
       }
       for (int item : *samples[i].observation.request) counts[i][item] += 1;
       for (int k = 0; k < core::kActionCount; ++k) targets[i][k] = samples[i].target[k];

@@ -13,7 +13,7 @@ class FrameStack : public testing::Test {};
 using Types = testing::Types<float, bfloat16>;
 TYPED_TEST_SUITE(FrameStack, Types);
 
-TYPED_TEST(FrameStack, LaysFramesSideBySideExactly) {
+TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
   constexpr int kStored = kStoredImageChannels<TypeParam>;
   for (int pixels : {1, 127, 128, 129, 1024}) {
     std::vector<std::vector<std::uint8_t>> frames(kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
@@ -25,9 +25,10 @@ TYPED_TEST(FrameStack, LaysFramesSideBySideExactly) {
     stackFrames(with_black, pixels, x.data());
     for (int p = 0; p < pixels; ++p) {
       for (int c = 0; c < kStored; ++c) {
-        const int byte = c / 3 == 1 ? 0 : c < kImageChannels ? frames[c / 3][3 * p + c % 3] : kMiddleByte;
-        const auto expected = static_cast<float>(byte - kMiddleByte);
-        ASSERT_EQ(toFloat(x[p * kStored + c]), expected) << "pixel " << p << " of " << pixels << ", channel " << c;
+        const int newest = frames[0][3 * p + c % 3], oldest = frames[2][3 * p + c % 3];
+        const int expected[] = {newest - kMiddleByte, newest, -oldest};
+        ASSERT_EQ(toFloat(x[p * kStored + c]), c < kImageChannels ? static_cast<float>(expected[c / 3]) : 0.f)
+            << "pixel " << p << " of " << pixels << ", channel " << c;
       }
     }
     EXPECT_EQ(toFloat(x.back()), -200.f) << "written past the end";

@@ -112,11 +112,11 @@ TEST_F(RolloutRecorderTest, RecordsWhatARolloutInOneProcessDoes) {
       EXPECT_EQ(recorded->steps[i].action, trajectory.steps[i].action);
       EXPECT_EQ(recorded->steps[i].label.action, trajectory.steps[i].label.action);
       EXPECT_EQ(recorded->steps[i].label.optimal, trajectory.steps[i].label.optimal);
-      EXPECT_EQ(recorded->steps[i].label.request, trajectory.steps[i].label.request);
-      ASSERT_EQ(recorded->steps[i].others.size(), trajectory.steps[i].others.size());
-      for (std::size_t k = 0; k < trajectory.steps[i].others.size(); ++k) {
-        EXPECT_EQ(recorded->steps[i].others[k].request, trajectory.steps[i].others[k].request);
-        EXPECT_EQ(recorded->steps[i].others[k].action, trajectory.steps[i].others[k].action);
+      EXPECT_EQ(recorded->steps[i].request, trajectory.steps[i].request);
+      ASSERT_EQ(recorded->steps[i].lessons.size(), trajectory.steps[i].lessons.size());
+      for (std::size_t k = 0; k < trajectory.steps[i].lessons.size(); ++k) {
+        EXPECT_EQ(recorded->steps[i].lessons[k].request, trajectory.steps[i].lessons[k].request);
+        EXPECT_EQ(recorded->steps[i].lessons[k].label.action, trajectory.steps[i].lessons[k].label.action);
       }
     }
   }

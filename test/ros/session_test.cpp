@@ -186,7 +186,7 @@ TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
 
   const auto world = sim::loadWorld(files_->world());
   const auto policy = model::loadPolicy(nn::WeightsFile::read(path), path, "f32");
-  const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kSharpened, learning::kHeldOutSeed);
+  const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kArgmax, learning::kHeldOutSeed);
   learning::RolloutRunner runner(*world, sim::loadTask(files_->task()), learning::kHeldOutSeed);
   const auto expected = nlohmann::json::parse(learning::evaluate(runner, *agent, 5, path).toJson());
   const auto scores = nlohmann::json::parse(core::readFile(files_->path("scores.json")));

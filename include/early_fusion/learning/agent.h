@@ -8,6 +8,7 @@
 
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/vocabulary.h"
+#include "early_fusion/expert/searching_expert.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/goal_policy.h"
 #include "early_fusion/sim/episode.h"
@@ -17,9 +18,10 @@ namespace early_fusion::learning {
 /// One episode as an agent meets it at a step. Nothing is owned.
 struct Situation {
   std::uint64_t episode = 0;
-  const sim::Episode* state = nullptr;  ///< for agents that may see the simulator's state
-  model::Observation observation;       ///< for those that may not
-  bool repeats = false;                 ///< observation is that of the episode's step before
+  const sim::Episode* state = nullptr;               ///< for agents that may see the simulator's state
+  model::Observation observation;                    ///< for those that may not
+  bool repeats = false;                              ///< observation is that of the episode's step before
+  expert::Heading heading = expert::Heading::kNone;  ///< over the observation's frames
 };
 
 /// Decides what to do, in several episodes at once.
@@ -39,6 +41,9 @@ std::unique_ptr<Agent> makePolicyAgent(model::GoalPolicy& policy, model::ActionC
 
 /// The greedy oracle.
 std::unique_ptr<Agent> makeExpertAgent();
+
+/// The expert that looks for what is not in view: what can be done without seeing more than the camera does.
+std::unique_ptr<Agent> makeSearchingAgent();
 
 /// Uniformly random actions: a baseline.
 std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed);

@@ -20,7 +20,7 @@ struct EpisodeOutcome {
 
 /// Means over episodes (Walsman et al. 2019, sec. IV-B).
 struct Evaluation {
-  std::string policy;  ///< a weights file, or expert, random, idle
+  std::string policy;  ///< a weights file, or expert, searching, random, idle
   std::string task;
   std::uint64_t seed = 0;
   std::vector<EpisodeOutcome> outcomes;

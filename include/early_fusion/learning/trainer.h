@@ -23,12 +23,15 @@ struct TrainingOptions {
   bool skip_repeats = false;           ///< leave out repeats (TrajectoryStep::repeats) that the policy got right
   int batch_size = 32;                 ///< frames in a training step, each with its requests
   int requests_per_frame = 1;          ///< that a frame is labelled and learnt for: the policy's own and others
+  bool vain_collects = false;          ///< learn also what to do after a COLLECT that came one move too early
+  std::string teacher = "greedy";      ///< who labels: one of teacherNames()
   double learning_rate = 1e-4;         ///< at the session's start
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
   double soft_labels = 0;              ///< share of a target that goes to all optimal actions alike, not to the label
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
   std::string exploration = "sample";  ///< how rollouts choose: one of model::actionChoiceNames()
   double weight_decay = 0;             ///< decoupled, a step
+  double averaging = 0;                ///< of the weights over steps: the share of the old mean, 0 for none
 
   core::OptionSet options();
 };
@@ -81,8 +84,9 @@ class Trainer {
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
   const TrainingOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }
-  model::GoalPolicy& policy() { return *policy_; }
-  const model::GoalPolicy& policy() const { return *policy_; }
+  /// What acts and is shipped: the mean over recent training steps where options().averaging is set.
+  model::GoalPolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
+  const model::GoalPolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
   const std::deque<Trajectory>& window() const { return window_; }
 
  private:
@@ -95,17 +99,17 @@ class Trainer {
   int newInRound() const;
   double learningRate() const;
   std::vector<FrameIndex> drawFrames() const;
-  /// Calls use(label) for every request of a frame that is learnt for.
-  template <class Use>
-  void forEachLabel(const TrajectoryStep& step, const Use& use) const;
+  void average();
+  std::size_t lessonCount(const TrajectoryStep& step) const;
   void addSamples(FrameIndex index, std::vector<model::Sample>& batch) const;
-  std::array<float, core::kActionCount> target(const Label& label) const;
+  std::array<float, core::kActionCount> target(const expert::Label& label) const;
   std::array<float, core::kActionCount> actionWeights() const;
   RoundStatistics rolloutStatistics() const;
 
   TrainingOptions options_;
   std::uint64_t seed_;
-  std::unique_ptr<model::GoalPolicy> policy_;
+  std::unique_ptr<model::GoalPolicy> learner_;
+  std::unique_ptr<model::GoalPolicy> averaged_;  // null where options_.averaging is 0
   nn::Adam adam_;
   std::deque<Trajectory> window_;
   std::array<float, core::kActionCount> action_weights_{};

@@ -27,7 +27,6 @@ struct SessionOptions {
   std::string output;   ///< run folder for the checkpoint, the weights, the learning curve and the result
   bool resume = false;  ///< go on from the output folder's checkpoint where there is one
   int evaluation_episodes = 500;
-  std::string evaluation_mode = "argmax";  ///< how the policy acts in them: one of model::actionChoiceNames()
   model::PolicyOptions policy;
   TrainingOptions training;
 

@@ -2,33 +2,35 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/vocabulary.h"
-#include "early_fusion/expert/greedy_expert.h"
+#include "early_fusion/expert/searching_expert.h"
 #include "early_fusion/sim/episode.h"
 
 namespace early_fusion::learning {
 
-/// What the expert would do at a frame if `request` were asked for there.
-struct Label {
+/// What a policy with this request should do.
+struct Lesson {
   core::Request request;
-  core::Action action = core::Action::kIdle;
-  expert::ActionSet optimal = 0;
+  expert::Label label;
 };
 
-/// How many requests besides the policy's own a frame is labelled for, if the scene has so many.
-inline constexpr int kOtherRequests = 7;
+/// For how many requests a frame is labelled, the policy's own among them, if the scene has so many.
+inline constexpr int kRequestsPerFrame = 8;
 
 /// One step of a rollout as training keeps it.
 struct TrajectoryStep {
   /// RGB8 (image_size, image_size, 3). Where nothing has moved, the frame of the step before: the same memory.
   std::shared_ptr<const std::vector<std::uint8_t>> frame;
-  core::Action action;        ///< what the policy did
-  Label label;                ///< for the request that it was given
-  std::vector<Label> others;  ///< for other requests at the same frame, each another, at most kOtherRequests
-  bool repeats = false;       ///< the policy saw frames and request of the step before once more
+  core::Request request;        ///< that the policy was given
+  core::Action action;          ///< what it did
+  expert::Label label;          ///< what the expert that sees everything would have done
+  std::vector<Lesson> lessons;  ///< the teacher's: for that request, then for others, at most kRequestsPerFrame
+  bool out_of_reach = false;    ///< nothing is in the cone: COLLECT and REMOVE do nothing
+  bool repeats = false;         ///< the policy saw frames and request of the step before once more
 };
 
 struct Trajectory {
@@ -40,13 +42,25 @@ struct Trajectory {
   double agreement() const;
 };
 
+/// Who labels what a policy is trained on.
+enum class Teacher {
+  kGreedy,     ///< the paper's expert, which sees everything: expert::label()
+  kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
+};
+
+/// "greedy", "searching".
+const std::vector<std::string>& teacherNames();
+
+/// @throws Error naming the known ones.
+Teacher teacherFromName(const std::string& name);
+
 /// Turns the states of one episode into a labelled trajectory; the same class serves rollouts in one process and the
 /// trainer node, which sees the states as messages.
 class TrajectoryRecorder {
  public:
   /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
   TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone);
+                     std::shared_ptr<const sim::ConeTable> cone, Teacher teacher = Teacher::kGreedy);
 
   /// Labels a state and keeps it; states must come in order from step 0.
   /// @return the step, valid until the next call. Its action is IDLE until setAction().
@@ -57,21 +71,23 @@ class TrajectoryRecorder {
 
   const Trajectory& trajectory() const { return trajectory_; }
 
+  /// Which way the camera was last panned, as far as the policy's frames tell at the state recorded last.
+  expert::Heading heading() const;
+
   /// Hands the trajectory over; the recorder is empty afterwards.
   Trajectory finish(const sim::Score& score);
 
  private:
-  Label label(const sim::EpisodeState& state, const core::Request& request) const;
+  expert::Label lesson(const sim::EpisodeState& state, const core::Request& request) const;
+  std::vector<Lesson> lessons(const sim::EpisodeState& state, bool moved) const;
   bool repeatsLast() const;
-  std::vector<Label> labelOthers(const sim::EpisodeState& state);
-  std::vector<int> askableItems(const sim::EpisodeState& state);
-  bool isNear(int instance, sim::Orientation orientation) const;
 
   std::uint64_t seed_;
   std::vector<sim::Instance> instances_;
   std::shared_ptr<const sim::ConeTable> cone_;
-  int requested_ = 0;           // instances requested at step 0
-  sim::InstanceMask seen_ = 0;  // in any picture so far
+  Teacher teacher_;
+  int requested_ = 0;            // instances requested at step 0
+  std::vector<int> latest_pan_;  // of the frames that the policy sees [steps], the oldest first
   Trajectory trajectory_;
 };
 

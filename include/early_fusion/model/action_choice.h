@@ -13,12 +13,9 @@ namespace early_fusion::model {
 ///
 /// kPersistent draws with one random number for 16 steps on average: each action is still as likely as the policy says,
 /// but where two are equally likely the camera keeps to one of them instead of trembling between both.
-///
-/// kSharpened draws from the probabilities to the power of 1.5. A policy without a memory that always does the
-/// likeliest may do the same in vain forever; drawn like this it seldom does anything unlikely, and gets away.
-enum class ActionChoice { kArgmax, kSample, kPersistent, kSharpened };
+enum class ActionChoice { kArgmax, kSample, kPersistent };
 
-/// The names of the above, for options: argmax, sample, persistent, sharpened.
+/// The names of the above, for options: argmax, sample, persistent.
 const std::vector<std::string>& actionChoiceNames();
 
 /// @throws Error when `name` is none of actionChoiceNames().

@@ -16,13 +16,15 @@ inline constexpr int kStoredImageChannels = kImageChannels;
 template <>
 inline constexpr int kStoredImageChannels<bfloat16> = 16;
 
-/// The network sees (byte - kMiddleByte) * kByteScale, in [-2, 2). About 0, because of inputs that are all positive
-/// about half of the first layer's channels start, and stay, below 0 on every image: dead after its ReLU.
+/// Of the newest frame the network sees (byte - kMiddleByte) * kByteScale, in [-2, 2), of each older one how the next
+/// differs from it, (next byte - byte) * kByteScale. About 0, because of inputs that are all positive about half of the
+/// first layer's channels start, and stay, below 0 on every image: dead after its ReLU. Differences, because three
+/// frames are nearly the same picture: any first layer can form them, but learns to see motion only slowly.
 inline constexpr int kMiddleByte = 128;
 inline constexpr float kByteScale = 1.f / 64.f;
 
-/// Lays three RGB8 frames (pixels, 3) side by side: x (pixels, kStoredImageChannels<T>), each byte - kMiddleByte, the
-/// first frame's red, green and blue first. nullptr is a black frame.
+/// Lays three RGB8 frames (pixels, 3), the newest first, side by side: x (pixels, kStoredImageChannels<T>), as the
+/// network sees them but for kByteScale; the newest frame's red, green and blue first. nullptr is a black frame.
 template <class T>
 void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x);
 

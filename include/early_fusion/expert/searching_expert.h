@@ -1,0 +1,25 @@
+#pragma once
+
+#include "early_fusion/expert/greedy_expert.h"
+
+namespace early_fusion::expert {
+
+/// Which way the camera was last panned.
+enum class Heading { kNone, kLeft, kRight };
+
+/// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.
+bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation);
+
+/// An expert that knows no more than a policy can: it goes greedily for the requested instances that are in view, and
+/// looks for the others.
+///
+/// While none is in view it keeps to `heading`, or without one pans across the middle; where the view holds everything
+/// to that side, it turns round, after tilting so far that the view holds the counter's front and back. So every label
+/// is a function of the last few pictures. The greedy expert's way to what nobody can see is not: a policy that
+/// imitates it learns to turn to and fro wherever the next unseen object is as likely on either side.
+///
+/// @param heading of the camera over the pictures that the policy sees.
+Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
+                     sim::Orientation orientation, Heading heading, const core::Request& request);
+
+}  // namespace early_fusion::expert

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""Draws learning curves: F1 and agreement of the rollouts against trajectories and against minutes.
+
+Runs of the same name are one line, their mean, with the band from the lowest to the highest.
+Example: scripts/plot_curves.py --out curves.svg fast=runs/fast1 fast=runs/fast2 paper=runs/paper
+"""
+import argparse
+import csv
+import os
+import sys
+
+try:
+    import matplotlib
+except ImportError:
+    sys.exit("plot_curves.py needs matplotlib: sudo apt install python3-matplotlib")
+matplotlib.use("Agg")
+matplotlib.rcParams["svg.hashsalt"] = "early_fusion"  # the same bytes every time
+from matplotlib import pyplot  # noqa: E402
+
+
+def read_run(argument):
+    """NAME=FOLDER -> (NAME, columns of its curve.csv)."""
+    name, equals, folder = argument.partition("=")
+    path = os.path.join(folder, "curve.csv")
+    if not equals:
+        sys.exit(f"plot_curves.py: '{argument}' is not NAME=FOLDER")
+    try:
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+    except OSError as error:
+        sys.exit(f"plot_curves.py: {path}: {error.strerror}")
+    if not rows:
+        sys.exit(f"plot_curves.py: {path}: no rounds yet")
+    return name, {key: [float(row[key]) for row in rows] for key in rows[0]}
+
+
+def smoothed(values, width):
+    """The mean over the last `width` values of each."""
+    return [sum(values[max(0, i + 1 - width):i + 1]) / min(i + 1, width) for i in range(len(values))]
+
+
+def draw(axes, runs, across, scale, column, width):
+    shortest = min(len(run[column]) for run in runs)
+    lines = [smoothed(run[column], width)[:shortest] for run in runs]
+    x = [sum(run[across][i] for run in runs) / len(runs) / scale for i in range(shortest)]
+    mean = [sum(values) / len(values) for values in zip(*lines)]
+    line, = axes.plot(x, mean, linewidth=1.3)
+    if len(runs) > 1:
+        axes.fill_between(x, list(map(min, zip(*lines))), list(map(max, zip(*lines))), alpha=0.2,
+                          color=line.get_color(), linewidth=0)
+    return line
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="+", metavar="NAME=FOLDER", help="a run folder, which holds curve.csv")
+    parser.add_argument("--out", required=True, help="the picture: .svg or .png")
+    parser.add_argument("--smooth", type=int, default=10, help="rounds that a point is the mean of [%(default)s]")
+    options = parser.parse_args()
+    groups = {}
+    for argument in options.runs:
+        name, columns = read_run(argument)
+        groups.setdefault(name, []).append(columns)
+
+    figure, rows = pyplot.subplots(2, 2, figsize=(10, 6.5), sharey="row", layout="constrained")
+    for row, (column, title) in zip(rows, [("f1", "F1 of rollouts"), ("agreement", "agreement of rollouts")]):
+        for axes, (across, scale, label) in zip(row, [("trajectories", 1, "trajectories"), ("elapsed_sec", 60, "minutes")]):
+            lines = [draw(axes, runs, across, scale, column, max(1, options.smooth)) for runs in groups.values()]
+            axes.set_xlabel(label)
+            axes.grid(alpha=0.3)
+            axes.set_xlim(left=0)
+        row[0].set_ylabel(title)
+    rows[0][0].legend(lines, groups, frameon=False)
+    figure.savefig(options.out, metadata={"Date": None} if options.out.endswith(".svg") else None)
+
+
+if __name__ == "__main__":
+    main()
