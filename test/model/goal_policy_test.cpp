@@ -84,19 +84,23 @@ TEST_P(EveryPrecision, ARowDependsNeitherOnTheOthersNorOnTheirNumber) {
 TEST_P(EveryPrecision, LearnsTheSameBitsTwiceAndOnAnyNumberOfThreads) {
   const TestBatch batch(37, 32, kItems, 3);
   const int threads = omp_get_max_threads();
-  std::vector<Eigen::VectorXf> values, buffers;
-  for (int count : {2, 2, 1, 3}) {
-    omp_set_num_threads(count);
-    const auto policy = makeSmall(smallOptions(GetParam()));
-    train(*policy, batch, 3);
-    values.push_back(policy->parameters().values());
-    buffers.push_back(policy->parameters().buffers());
+  for (const int channels : {16, 96}) {
+    PolicyOptions options = smallOptions(GetParam());
+    options.channels = channels;
+    std::vector<Eigen::VectorXf> values, buffers;
+    for (int count : {2, 2, 1, 3}) {
+      omp_set_num_threads(count);
+      const auto policy = makeSmall(options);
+      train(*policy, batch, 3);
+      values.push_back(policy->parameters().values());
+      buffers.push_back(policy->parameters().buffers());
+    }
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      EXPECT_EQ(values[i], values[0]) << channels << " channels";
+      EXPECT_EQ(buffers[i], buffers[0]) << channels << " channels";
+    }
   }
   omp_set_num_threads(threads);
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    EXPECT_EQ(values[i], values[0]);
-    EXPECT_EQ(buffers[i], buffers[0]);
-  }
 }
 
 TEST_P(EveryPrecision, LearnsABatchByHeart) {
