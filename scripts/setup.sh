@@ -63,6 +63,8 @@ if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/
     { cat build.log; exit 1; }
   rm -f build.log
 fi
+targets=(all)
+[ "$with_tests" = OFF ] || targets+=(tests)
 echo "Building with $(nproc) jobs"
-cmake --build build -j"$(nproc)" -- --no-print-directory | grep -vE '^(\[ *[0-9]+%\] Built|Consolidate|Scanning)' || true
-cmake --build build -- --no-print-directory >/dev/null
+cmake --build build -j"$(nproc)" --target "${targets[@]}" -- --no-print-directory | grep -vE '^(\[ *[0-9]+%\] Built|Consolidate|Scanning)' || true
+cmake --build build --target "${targets[@]}" -- --no-print-directory >/dev/null

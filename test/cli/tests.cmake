@@ -3,4 +3,3 @@ target_link_libraries(cli_command_line_test ${PROJECT_NAME}_learning nlohmann_js
   opencv_imgcodecs gtest_main)
 target_compile_definitions(cli_command_line_test PRIVATE EARLY_FUSION_PROGRAM="$<TARGET_FILE:${PROJECT_NAME}_cli>")
 add_dependencies(cli_command_line_test ${PROJECT_NAME}_cli)
-add_dependencies(build_tests cli_command_line_test)
