@@ -41,8 +41,8 @@ class Episode {
   /// Carries out one action; every action costs a step. Must not be called when finished().
   void step(core::Action action);
 
-  /// Asks for other items from here on (a user's request by hand). Items not in the scene are left out. The score's recall
-  /// then counts these and what had been collected of earlier requests.
+  /// Asks for other items from here on (a user's request by hand). Items not in the scene are left out. The score's
+  /// recall then counts these and what had been collected of earlier requests.
   void setRequest(const core::Request& request);
 
   Score score() const;

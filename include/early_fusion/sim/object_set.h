@@ -15,8 +15,8 @@ struct Object {
   std::string name;
   TexturedMesh mesh;
   std::string mesh_file;
-  Eigen::Vector3d mesh_scale;         ///< the file's coordinates times mesh_scale, less mesh_origin, are those of `mesh`
-  Eigen::Vector3d mesh_origin;        ///< [m]
+  Eigen::Vector3d mesh_scale;   ///< the file's coordinates times mesh_scale, less mesh_origin, are those of `mesh`
+  Eigen::Vector3d mesh_origin;  ///< [m]
   std::vector<Eigen::Vector3d> hull;  ///< corners of the convex hull that placement and the cone use [m]
 };
 

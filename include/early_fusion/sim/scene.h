@@ -13,10 +13,10 @@ namespace early_fusion::sim {
 
 /// One object on the counter, upright.
 struct Instance {
-  int item = 0;        ///< index into the object set
-  double x = 0;        ///< [m], world frame
-  double y = 0;        ///< [m], world frame
-  double theta = 0;    ///< [rad] about the world's z
+  int item = 0;      ///< index into the object set
+  double x = 0;      ///< [m], world frame
+  double y = 0;      ///< [m], world frame
+  double theta = 0;  ///< [rad] about the world's z
 };
 
 /// Bit i is set while instance i is still on the counter.

@@ -51,7 +51,8 @@ struct World {
   PlacementArea placement;
 };
 
-/// @param world_file a WorldOptions file, to which the paths in it are relative; empty: the package's config/world.yaml.
+/// @param world_file a WorldOptions file, to which the paths in it are relative; empty: the package's
+/// config/world.yaml.
 /// @throws Error naming file, key and value.
 std::shared_ptr<const World> loadWorld(const std::string& world_file);
 
