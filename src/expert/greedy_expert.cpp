@@ -11,8 +11,6 @@ namespace {
 
 using core::Action;
 
-constexpr ActionSet bit(Action action) { return static_cast<ActionSet>(1u << static_cast<int>(action)); }
-
 int lowest(sim::InstanceMask mask) { return __builtin_ctz(mask); }
 
 /// Where several actions are equally good, the first of these is the label.

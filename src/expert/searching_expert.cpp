@@ -36,12 +36,12 @@ Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance
   const sim::InstanceMask wanted = wantedInstances(instances, present, request);
   sim::InstanceMask in_view = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    const sim::InstanceMask bit = sim::InstanceMask(1) << i;
-    if ((wanted & bit) && isInView(cone, static_cast<int>(i), orientation)) in_view |= bit;
+    const sim::InstanceMask instance = sim::InstanceMask(1) << i;
+    if ((wanted & instance) && isInView(cone, static_cast<int>(i), orientation)) in_view |= instance;
   }
   if (wanted == 0 || in_view != 0) return labelFor(cone, in_view, present, orientation);
   const Action action = search(cone.lattice(), orientation, heading);
-  return {action, static_cast<ActionSet>(1u << static_cast<int>(action)), 0};
+  return {action, bit(action), 0};
 }
 
 }  // namespace early_fusion::expert

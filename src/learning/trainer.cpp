@@ -144,11 +144,10 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
     batch.push_back(sample);
   };
   for (std::size_t i = 0; i < lessonCount(step); ++i) add(step.lessons[i]);
-  const bool moved = observation.frames[0] != observation.frames[1];
-  if (!options_.vain_collects || !step.out_of_reach || !moved) return;
+  const std::uint8_t *now = observation.frames[0], *before = observation.frames[1];
+  if (!options_.vain_collects || !step.out_of_reach || now == before) return;
   // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
-  if (index.step % 2 == 1) observation.frames[1] = observation.frames[0];
-  observation.frames = {observation.frames[0], observation.frames[0], observation.frames[1]};
+  observation.frames = {now, now, index.step % 2 == 1 ? now : before};
   for (std::size_t i = 0; i < lessonCount(step); ++i) {
     if (step.lessons[i].label.steps == 2) add(step.lessons[i]);
   }

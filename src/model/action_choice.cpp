@@ -1,7 +1,5 @@
 #include "early_fusion/model/action_choice.h"
 
-#include <algorithm>
-
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
 

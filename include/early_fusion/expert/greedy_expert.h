@@ -11,6 +11,8 @@ namespace early_fusion::expert {
 /// A set of actions: bit i stands for Action(i).
 using ActionSet = std::uint8_t;
 
+constexpr ActionSet bit(core::Action action) { return static_cast<ActionSet>(1u << static_cast<int>(action)); }
+
 inline bool contains(ActionSet set, core::Action action) { return (set >> static_cast<int>(action)) & 1; }
 
 /// The steps that collecting one instance would cost from here; unreachable instances are left out.
