@@ -24,7 +24,11 @@ bool wantsHelp(int argc, char** argv) {
 
 void reportFailure(const std::string& reason) {
   ROS_FATAL("%s", reason.c_str());
-  if (::ros::isInitialized() && ::ros::param::has(kFailureParameter)) ::ros::param::set(kFailureParameter, reason);
+  // Of the launch file that started the node, in its namespace or one above.
+  std::string parameter;
+  if (::ros::isInitialized() && ::ros::param::search(kFailureParameter, parameter)) {
+    ::ros::param::set(parameter, reason);
+  }
 }
 
 }  // namespace

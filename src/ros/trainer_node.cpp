@@ -1,7 +1,6 @@
 #include "early_fusion/ros/trainer_node.h"
 
 #include <early_fusion/Progress.h>
-#include <early_fusion/Weights.h>
 #include <ros/param.h>
 #include <ros/this_node.h>
 
@@ -39,6 +38,8 @@ std::unique_ptr<learning::TrainingSession> makeSession() {
 core::OptionSet TrainerNode::Options::options() {
   core::OptionSet set("trainer");
   set.include(session.options());
+  set.add("workers", workers, 1, 64, "",
+          "pairs of simulator and policy that share the episodes: in this namespace, worker_2, worker_3, ...");
   set.add("stall_timeout", stall_sec, 1, 3600, "s", "ask for episodes again when no step of them has come for so long");
   set.add("progress_period", progress_period_sec, 0.1, 3600, "s", "between two messages on 'progress'");
   addDiagnosticPeriod(set, diagnostic_period_sec);
@@ -48,8 +49,7 @@ core::OptionSet TrainerNode::Options::options() {
 TrainerNode::TrainerNode(const Options& options)
     : session_(makeSession()),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
-      client_(node_, session_->world(), options.stall_sec, health_),
-      weights_publisher_(node_.advertise<Weights>(kWeightsTopic, 1, true)),
+      workers_(options.workers, session_->world(), options.stall_sec, health_),
       progress_publisher_(node_.advertise<Progress>(kProgressTopic, 4, true)) {
   const learning::SessionOptions& session = session_->options();
   ROS_INFO("%s %s (%ld parameters) on task %s, preset %s, seed %lu, in %s",
@@ -80,7 +80,7 @@ void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_
   weights.seed = seed;
   weights.precision = session_->options().policy.precision;
   weights.data.assign(bytes.begin(), bytes.end());
-  weights_publisher_.publish(weights);
+  workers_.publish(weights);
 
   RolloutPlan plan;
   plan.task = session_->options().task;
@@ -90,29 +90,27 @@ void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_
   plan.weights = weights_id_;
   plan.mode = mode;
   plan.teacher = learning::teacherFromName(session_->options().training.teacher);
-  client_.start(plan, std::move(on_trajectory), std::move(on_done));
+  workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
 void TrainerNode::rollOut() {
-  enterStage("rollouts");
   learning::Trainer& trainer = session_->trainer();
-  const int episodes = trainer.missingInRound();
-  const auto keep = [this, episodes](learning::Trajectory trajectory) {
-    learning::Trainer& learner = session_->trainer();
-    learner.add(std::move(trajectory));
-    stage_done_ = 1 - static_cast<double>(learner.roundDue() ? 0 : learner.missingInRound()) / episodes;
+  const auto keep = [this](learning::Trajectory trajectory) {
+    session_->trainer().add(std::move(trajectory));
     progress_ = session_->progress();
     progress_taken_ = ::ros::WallTime::now();
   };
-  play(trainer.options().exploration, session_->options().seed, trainer.trajectoriesSeen(), episodes, keep,
-       [this] { train(); });
+  play(trainer.options().exploration, session_->options().seed, trainer.trajectoriesSeen(), trainer.missingInRound(),
+       keep, [this] { train(); });
+  enterStage("rollouts");
 }
 
 void TrainerNode::train() {
+  round_done_ = 0;
   enterStage("training");
   round_ = std::async(std::launch::async, [this] {
     return session_->trainRound([this](double share) {
-      stage_done_ = share;
+      round_done_ = share;
       if (stop_) throw Stopped();
     });
   });
@@ -129,7 +127,6 @@ void TrainerNode::onRoundTimer() {
 }
 
 void TrainerNode::evaluate() {
-  enterStage("evaluation");
   const int episodes = session_->options().evaluation_episodes;
   evaluation_ = learning::Evaluation();
   evaluation_.policy = session_->weightsPath();
@@ -138,10 +135,10 @@ void TrainerNode::evaluate() {
   if (episodes == 0) return finish();
   const auto keep = [this, episodes](learning::Trajectory trajectory) {
     evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
-    stage_done_ = static_cast<double>(evaluation_.outcomes.size()) / episodes;
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
   play("argmax", learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
+  enterStage("evaluation");
 }
 
 void TrainerNode::finish() {
@@ -153,10 +150,14 @@ void TrainerNode::finish() {
 
 void TrainerNode::enterStage(const std::string& stage) {
   stage_ = stage;
-  stage_done_ = stage == "finished" ? 1 : 0;
   progress_ = session_->progress();
   progress_taken_ = ::ros::WallTime::now();
   publishProgress();
+}
+
+double TrainerNode::stageDone() const {
+  if (stage_ == "training") return round_done_;
+  return stage_ == "finished" ? 1 : workers_.done();
 }
 
 void TrainerNode::publishProgress() {
@@ -169,7 +170,7 @@ void TrainerNode::publishProgress() {
   message.weights = weights_id_;
   message.trajectories = progress_.trajectories;
   message.trajectories_total = progress_.trajectories_total;
-  message.stage_done = stage_done_;
+  message.stage_done = stageDone();
   message.f1 = finished ? evaluation_.f1() : progress_.f1;
   message.agreement = finished ? evaluation_.agreement() : progress_.agreement;
   message.loss = progress_.loss;
@@ -181,8 +182,8 @@ void TrainerNode::publishProgress() {
 
 void TrainerNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
   status.add("stage", stage_);
-  status.addf("stage done [%]", "%.0f", 100 * stage_done_);
-  status.add("waits for", client_.waitsFor());
+  status.addf("stage done [%]", "%.0f", 100 * stageDone());
+  status.add("waits for", workers_.waitsFor());
   status.add("weights", weights_id_);
   status.addf("trajectories", "%lu of %lu", static_cast<unsigned long>(progress_.trajectories),
               static_cast<unsigned long>(progress_.trajectories_total));

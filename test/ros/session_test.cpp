@@ -98,10 +98,9 @@ class SessionTest : public testing::Test {
   }
   static bool exists(const std::string& name) { return fs::exists(files_->path(name)); }
 
-  /// The process of a node that this test's launches have started.
-  static std::optional<int> processOf(const std::string& node) {
-    const std::vector<int> found = processesWith({node + "_node", "__log:=" + files_->path("ros_home/log")});
-    return found.empty() ? std::nullopt : std::optional<int>(found.front());
+  /// The processes of a node, one a worker, that this test's launches have started.
+  static std::vector<int> processesOf(const std::string& node) {
+    return processesWith({node + "_node", "__log:=" + files_->path("ros_home/log")});
   }
 
   static SmallSession* files_;
@@ -132,19 +131,30 @@ TEST_F(SessionTest, KilledNodesComeBackAndTheWeightsAreTheSame) {
   ASSERT_TRUE(waitFor([] { return exists("killed/checkpoint.safetensors"); })) << session->output();
   for (const std::string node : {"policy", "simulator", "trainer"}) {
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    const std::optional<int> victim = processOf(node);
-    ASSERT_TRUE(victim) << session->output();
+    const std::vector<int> before = processesOf(node);
+    ASSERT_EQ(before.size(), node == "trainer" ? 1u : 2u) << session->output();
+    const int victim = node == "policy" ? before.front() : before.back();
     ASSERT_FALSE(exists("killed/result.json")) << "too fast to be killed in between";
-    ::kill(*victim, SIGKILL);
+    ::kill(victim, SIGKILL);
     ASSERT_TRUE(waitFor([&] {
-      const std::optional<int> successor = processOf(node);
-      return successor && *successor != *victim;
+      const std::vector<int> now = processesOf(node);
+      return now.size() == before.size() && std::count(now.begin(), now.end(), victim) == 0;
     })) << session->output();
   }
   ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
   ASSERT_TRUE(exists("killed/result.json")) << session->output();
   EXPECT_TRUE(weights("killed") == weights("reference")) << session->output();
   EXPECT_EQ(result("killed")["per_episode"], result("reference")["per_episode"]);
+}
+
+TEST_F(SessionTest, AnyNumberOfWorkersTrainsTheSameWeights) {
+  // A round has two trajectories: the third worker has nothing to do in it.
+  for (const std::string workers : {"1", "3"}) {
+    const auto session = launchTraining("workers" + workers, {"workers:=" + workers});
+    ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+    ASSERT_TRUE(exists("workers" + workers + "/result.json")) << session->output();
+    EXPECT_TRUE(weights("workers" + workers) == weights("reference"));
+  }
 }
 
 TEST_F(SessionTest, TwoSessionsSideBySideInTheirNamespaces) {

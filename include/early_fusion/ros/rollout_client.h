@@ -38,6 +38,9 @@ class RolloutClient {
   /// The policy node's latest status; nullptr before the first.
   const PolicyStatus* policyStatus() const { return policy_status_.get(); }
 
+  /// Whether a plan is at hand.
+  bool busy() const { return phase_ != Phase::kIdle; }
+
   /// What is being waited for, for people: "the simulator", "a policy with weights 'x'", "episodes 3 to 49".
   std::string waitsFor() const;
 

@@ -9,7 +9,7 @@
 
 #include "early_fusion/learning/training_session.h"
 #include "early_fusion/ros/health.h"
-#include "early_fusion/ros/rollout_client.h"
+#include "early_fusion/ros/rollout_workers.h"
 
 namespace early_fusion::nodes {
 
@@ -22,6 +22,7 @@ class TrainerNode {
  public:
   struct Options {
     learning::SessionOptions session;  ///< only declares them: a preset comes below what was given, see the constructor
+    int workers = 1;
     double stall_sec = 10;
     double progress_period_sec = 1;
     double diagnostic_period_sec = 1;
@@ -48,14 +49,15 @@ class TrainerNode {
   void play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
             std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
+  /// [0, 1]
+  double stageDone() const;
   void publishProgress();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   ::ros::NodeHandle node_;
   std::unique_ptr<learning::TrainingSession> session_;
   Health health_;
-  RolloutClient client_;
-  ::ros::Publisher weights_publisher_;
+  RolloutWorkers workers_;
   ::ros::Publisher progress_publisher_;
   ::ros::WallTimer progress_timer_;
   ::ros::WallTimer round_timer_;
@@ -64,7 +66,7 @@ class TrainerNode {
   learning::Progress progress_;  // of the session when it was last at rest: a round's thread writes to the session
   ::ros::WallTime progress_taken_;
   std::string weights_id_;
-  std::atomic<double> stage_done_{0};
+  std::atomic<double> round_done_{0};  // [0, 1] of the round that is being trained
   learning::Evaluation evaluation_;
   std::atomic<bool> stop_{false};
   std::future<learning::RoundStatistics> round_;
