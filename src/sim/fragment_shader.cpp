@@ -103,49 +103,99 @@ FragmentShader::FragmentShader(const RenderAssets& assets, const ShadowMap& shad
     : assets_(assets),
       image_size_(image_size),
       shadow_map_(shadow_map),
+      mixed_offset_(image_size * SampleBuffer::kPixelsDown + 1),
+      mixed_place_(mixed_offset_.size()),
       sums_(static_cast<std::size_t>(image_size) * image_size) {}
 
-void FragmentShader::begin(const Viewpoint& viewpoint, const MeshDrawer& drawer) {
+void FragmentShader::shade(const Viewpoint& viewpoint, const MeshDrawer& drawer, const SampleBuffer& samples,
+                           core::Image& image) {
   viewpoint_ = viewpoint;
   vertices_ = drawer.vertices();
   triangles_ = drawer.triangles().data();
   std::fill(sums_.begin(), sums_.end(), 0u);
+  addFragments(samples);
+  flush();
+  for (int i = count_; i < kLanes; ++i) id_[i] = 0;  // a triangle of an earlier picture may be gone
+  shadeLanes(0, count_);
   count_ = 0;
+  writeMeans(image);
 }
 
-void FragmentShader::shade() {
+/// One fragment for each of the different triangles that a pixel's four samples see. Pixels that see one triangle are
+/// told from the others first, a block at a time.
+void FragmentShader::addFragments(const SampleBuffer& samples) {
+  constexpr int kPixels = kLanes / 4;
+  constexpr int kAcross = SampleBuffer::kPixelsAcross, kDown = SampleBuffer::kPixelsDown;
+  const std::int32_t* ids = samples.ids();
+  std::int32_t offset = 0;
+  for (int row = 0; row < samples.blocksDown(); ++row) {
+    int mixed = 0;
+    for (int column = 0; column < samples.blocksAcross(); ++column) {
+      const auto block = loadLanes<IntLanes>(ids + offset);
+      const std::uint32_t like_first = maskBits(block == firstOfFours(block));
+      const std::uint32_t whole = like_first & like_first >> 1 & like_first >> 2 & like_first >> 3;
+      const std::int32_t corner = place(column * kAcross, row * kDown);
+      reserve(kPixels);
+      for (int pixel = 0; pixel < kPixels; ++pixel, offset += 4) {
+        const std::int32_t here = corner + place(pixel % kAcross, pixel / kAcross);
+        const bool is_whole = whole >> (4 * pixel) & 1u;
+        addIf(is_whole, ids[offset], here | 0xf);
+        mixed_offset_[mixed] = offset;
+        mixed_place_[mixed] = here;
+        mixed += !is_whole;
+      }
+    }
+    for (int i = 0; i < mixed; ++i) addMixed(ids + mixed_offset_[i], mixed_place_[i]);
+  }
+}
+
+void FragmentShader::addMixed(const std::int32_t* id, std::int32_t place) {
+  const int same01 = id[0] == id[1], same02 = id[0] == id[2], same03 = id[0] == id[3];
+  const int same12 = id[1] == id[2], same13 = id[1] == id[3], same23 = id[2] == id[3];
+  reserve(4);
+  addIf(true, id[0], place | 1 | same01 << 1 | same02 << 2 | same03 << 3);
+  addIf(!same01, id[1], place | 2 | same12 << 2 | same13 << 3);
+  addIf(!(same02 | same12), id[2], place | 4 | same23 << 3);
+  addIf(!(same03 | same13 | same23), id[3], place | 8);
+}
+
+void FragmentShader::flush() {
+  int first = 0;
+  for (; first + kLanes <= count_; first += kLanes) shadeLanes(first, kLanes);
+  count_ -= first;
+  std::copy_n(id_ + first, count_, id_);
+  std::copy_n(place_ + first, count_, place_);
+}
+
+void FragmentShader::shadeLanes(int first, int lanes) {
   alignas(64) std::uint32_t colors[kLanes];
   alignas(64) std::int32_t pixels[kLanes];
-  for (int i = count_; i % kLanes != 0; ++i) id_[i] = 0;  // a triangle of an earlier picture may be gone
-  for (int first = 0; first < count_; first += kLanes) {
-    const IntLanes no_triangle = loadLanes<IntLanes>(id_ + first) == 0;
-    const IntLanes mean = select(no_triangle, allLanes(kBackground), color(interpolate(first)));
-    const IntLanes sum = mean * gather<IntLanes>(kCoverage.count, loadLanes<IntLanes>(coverage_ + first));
-    const IntLanes pixel = loadLanes<IntLanes>(pixel_y_ + first) * image_size_ + loadLanes<IntLanes>(pixel_x_ + first);
-    std::memcpy(colors, &sum, sizeof colors);
-    std::memcpy(pixels, &pixel, sizeof pixels);
-    const int lanes = std::min(kLanes, count_ - first);
-    for (int lane = 0; lane < lanes; ++lane) sums_[pixels[lane]] += colors[lane];
-  }
-  count_ = 0;
+  const auto place = loadLanes<IntLanes>(place_ + first);
+  const IntLanes x = place >> kCoverageBits & ((1 << kColumnBits) - 1), y = place >> (kCoverageBits + kColumnBits);
+  const IntLanes coverage = place & ((1 << kCoverageBits) - 1);
+  const IntLanes no_triangle = loadLanes<IntLanes>(id_ + first) == 0;
+  const IntLanes mean = select(no_triangle, allLanes(kBackground), color(interpolate(id_ + first, coverage, x, y)));
+  const IntLanes sum = mean * gather<IntLanes>(kCoverage.count, coverage);
+  const IntLanes pixel = y * image_size_ + x;
+  std::memcpy(colors, &sum, sizeof colors);
+  std::memcpy(pixels, &pixel, sizeof pixels);
+  for (int lane = 0; lane < lanes; ++lane) sums_[pixels[lane]] += colors[lane];
 }
 
-FragmentShader::Attributes FragmentShader::interpolate(int first) const {
+FragmentShader::Attributes FragmentShader::interpolate(const std::int32_t* id, IntLanes coverage, IntLanes pixel_x,
+                                                       IntLanes pixel_y) const {
   constexpr int kRecord = 8;
   std::int32_t offset[kLanes];
   Columns<kRecord> corner[3];
   for (int k = 0; k < 3; ++k) {
-    for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * triangles_[id_[first + lane]].corner[k];
+    for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * triangles_[id[lane]].corner[k];
     corner[k] = gatherRecords<kRecord>(&vertices_->x, offset);
   }
-  for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * id_[first + lane];
+  for (int lane = 0; lane < kLanes; ++lane) offset[lane] = kRecord * id[lane];
   const Columns<kRecord> triangle = gatherRecords<kRecord>(&triangles_->inverse_area, offset);
   const auto &a = corner[0], &b = corner[1], &c = corner[2];
-  const IntLanes coverage = loadLanes<IntLanes>(coverage_ + first);
-  const FloatLanes x = toFloat(loadLanes<IntLanes>(pixel_x_ + first) * (2 * kSubsamples)) +
-                       gather<FloatLanes>(kCoverage.middle_x, coverage);
-  const FloatLanes y = toFloat(loadLanes<IntLanes>(pixel_y_ + first) * (2 * kSubsamples)) +
-                       gather<FloatLanes>(kCoverage.middle_y, coverage);
+  const FloatLanes x = toFloat(pixel_x * (2 * kSubsamples)) + gather<FloatLanes>(kCoverage.middle_x, coverage);
+  const FloatLanes y = toFloat(pixel_y * (2 * kSubsamples)) + gather<FloatLanes>(kCoverage.middle_y, coverage);
   const FloatLanes zero{}, one = allLanes(1.f);
   // Clamped, because the areas of a long sliver's parts are not exact.
   FloatLanes weight_b = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) * triangle[0];
@@ -195,8 +245,7 @@ IntLanes FragmentShader::color(const Attributes& at) const {
          channel(texture.red_blue >> 16) << (2 * kSumBits);
 }
 
-void FragmentShader::finish(core::Image& image) {
-  shade();
+void FragmentShader::writeMeans(core::Image& image) const {
   std::uint8_t* rgb = image.rgb.data();
   for (const std::uint32_t sum : sums_) {
     // A quarter of each channel's sum, rounded: 4 * 255 + 2 does not reach into the next channel.

@@ -7,6 +7,7 @@
 #include "early_fusion/core/image.h"
 #include "mesh_drawer.h"
 #include "render_assets.h"
+#include "sample_buffer.h"
 #include "shadow_map.h"
 
 namespace early_fusion::sim {
@@ -23,29 +24,17 @@ class FragmentShader {
  public:
   FragmentShader(const RenderAssets& assets, const ShadowMap& shadow_map, int image_size);
 
-  /// Begins a picture of what `drawer` drew.
-  void begin(const Viewpoint& viewpoint, const MeshDrawer& drawer);
-
-  /// Adds a fragment.
-  /// @param id of the triangle, 0 where there is none
-  /// @param coverage which of the pixel's four samples belong to it: bit 0 top left, 1 top right, 2 and 3 below
-  void add(std::int32_t id, int coverage, int x, int y) { addIf(true, id, coverage, x, y); }
-
-  /// Without a branch on `really`.
-  void addIf(bool really, std::int32_t id, int coverage, int x, int y) {
-    id_[count_] = id;
-    coverage_[count_] = coverage;
-    pixel_x_[count_] = x;
-    pixel_y_[count_] = y;
-    count_ += really;
-    if (count_ == kCapacity) shade();
-  }
-
-  /// Finishes the picture: the mean of each pixel's four samples.
-  void finish(core::Image& image);
+  /// Colours every pixel with the mean of its four samples, which show triangles of `drawer`, or none (id 0).
+  void shade(const Viewpoint& viewpoint, const MeshDrawer& drawer, const SampleBuffer& samples, core::Image& image);
 
  private:
   static constexpr int kCapacity = 256;
+
+  /// A pixel and which of its samples a fragment has, in one number. Coverage: bit 0 is the sample at the top left, 1
+  /// at the top right, 2 and 3 are those below.
+  static constexpr int kCoverageBits = 4, kColumnBits = 12;
+  static_assert(kMaxScreenSize <= 1 << kColumnBits);
+  static constexpr std::int32_t place(int x, int y) { return y << (kCoverageBits + kColumnBits) | x << kCoverageBits; }
 
   /// What is interpolated over a triangle, and what is the same all over it.
   struct Attributes {
@@ -56,8 +45,26 @@ class FragmentShader {
     IntLanes material;
   };
 
-  void shade();
-  Attributes interpolate(int first) const;
+  void addFragments(const SampleBuffer& samples);
+  void addMixed(const std::int32_t* ids, std::int32_t place);
+
+  /// Without a branch on `really`, which no processor can foresee.
+  void addIf(bool really, std::int32_t id, std::int32_t place_and_coverage) {
+    id_[count_] = id;
+    place_[count_] = place_and_coverage;
+    count_ += really;
+  }
+
+  /// Makes room for `count` more fragments.
+  void reserve(int count) {
+    if (count_ + count > kCapacity) flush();
+  }
+
+  /// Shades the fragments in hand, but for the last few that don't fill an instruction.
+  void flush();
+  void shadeLanes(int first, int lanes);
+  void writeMeans(core::Image& image) const;
+  Attributes interpolate(const std::int32_t* id, IntLanes coverage, IntLanes pixel_x, IntLanes pixel_y) const;
   IntLanes color(const Attributes& attributes) const;
 
   const RenderAssets& assets_;
@@ -70,9 +77,9 @@ class FragmentShader {
   // Fragments in hand, one element each; what lies beyond count_ is left from earlier ones.
   int count_ = 0;
   alignas(64) std::int32_t id_[kCapacity] = {};
-  alignas(64) std::int32_t coverage_[kCapacity] = {};
-  alignas(64) std::int32_t pixel_x_[kCapacity] = {};
-  alignas(64) std::int32_t pixel_y_[kCapacity] = {};
+  alignas(64) std::int32_t place_[kCapacity] = {};
+  // Pixels of a row of blocks that see several triangles: where their ids begin, and their places.
+  std::vector<std::int32_t> mixed_offset_, mixed_place_;
 
   // Of each pixel: the sum over its samples, ten bits a channel, red lowest.
   std::vector<std::uint32_t> sums_;

@@ -60,9 +60,7 @@ class Rasterizer::Implementation {
         assets_(sharedRenderAssets(world)),
         shadow_map_(world),
         samples_(2 * image_size, 2 * image_size, true),
-        shader_(*assets_, shadow_map_, image_size),
-        whole_(image_size + 1),
-        mixed_(image_size + 1) {}
+        shader_(*assets_, shadow_map_, image_size) {}
 
   void setScene(const std::vector<Instance>& instances, InstanceMask present) {
     std::vector<Instance> standing;
@@ -100,34 +98,7 @@ class Rasterizer::Implementation {
       drawer_.draw(*object.mesh, object.world_from_mesh, projection, samples_);
     }
     for (const RenderMesh& cluster : assets_->kitchen) drawer_.draw(cluster, identity_, projection, samples_);
-    shader_.begin(viewpoint, drawer_);
-    for (int y = 0; y < image_size_; ++y) addFragments(y);
-    shader_.finish(image);
-  }
-
-  /// One fragment for each of the different triangles that a pixel's four samples see. Without branches on what they
-  /// see, which no processor can foresee: pixels that see one triangle are told from the others first.
-  void addFragments(int y) {
-    int whole = 0, mixed = 0;
-    for (int x = 0; x < image_size_; ++x) {
-      const std::int32_t* id = samples_.ids() + samples_.pixelOffset(x, y);
-      const bool is_whole = (id[0] == id[1]) & (id[0] == id[2]) & (id[0] == id[3]);
-      whole_[whole] = mixed_[mixed] = x;
-      whole += is_whole;
-      mixed += !is_whole;
-    }
-    for (int i = 0; i < whole; ++i) {
-      shader_.add(samples_.ids()[samples_.pixelOffset(whole_[i], y)], 0xf, whole_[i], y);
-    }
-    for (int i = 0; i < mixed; ++i) {
-      const std::int32_t* id = samples_.ids() + samples_.pixelOffset(mixed_[i], y);
-      const int same01 = id[0] == id[1], same02 = id[0] == id[2], same03 = id[0] == id[3];
-      const int same12 = id[1] == id[2], same13 = id[1] == id[3], same23 = id[2] == id[3];
-      shader_.add(id[0], 1 | same01 << 1 | same02 << 2 | same03 << 3, mixed_[i], y);
-      shader_.addIf(!same01, id[1], 2 | same12 << 2 | same13 << 3, mixed_[i], y);
-      shader_.addIf(!(same02 | same12), id[2], 4 | same23 << 3, mixed_[i], y);
-      shader_.addIf(!(same03 | same13 | same23), id[3], 8, mixed_[i], y);
-    }
+    shader_.shade(viewpoint, drawer_, samples_, image);
   }
 
   static double focalLength(int image_size, double fov_deg) {
@@ -143,7 +114,6 @@ class Rasterizer::Implementation {
   SampleBuffer samples_;
   MeshDrawer drawer_;
   FragmentShader shader_;
-  std::vector<int> whole_, mixed_;  // pixels of a row
   std::vector<Instance> standing_;
   std::vector<ShadowMap::Caster> objects_;
   core::Image last_image_;  // empty where the scene has changed since

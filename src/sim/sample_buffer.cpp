@@ -7,7 +7,7 @@ namespace early_fusion::sim {
 
 namespace {
 
-constexpr int kPixelsAcross = SampleBuffer::kBlockWidth / 2;
+constexpr int kPixelsAcross = SampleBuffer::kPixelsAcross;
 
 /// Place of each lane's sample within its block [subsamples].
 IntLanes laneX() {
@@ -27,7 +27,7 @@ IntLanes laneY() {
 SampleBuffer::SampleBuffer(int width, int height, bool with_ids)
     : width_(width),
       height_(height),
-      blocks_per_row_(width / kBlockWidth),
+      blocks_across_(width / kBlockWidth),
       depth_(static_cast<std::size_t>(width) * height / kLanes),
       ids_(with_ids ? depth_.size() : 0) {
   assert(width % kBlockWidth == 0 && height % kBlockHeight == 0);
@@ -79,7 +79,7 @@ void SampleBuffer::fillBlocks(const TriangleBatch& batch, int lane, std::int32_t
   const float depth_x = batch.depth_x[lane], depth_y = batch.depth_y[lane], first_depth = batch.depth[lane];
   const FloatLanes low = allLanes(batch.depth_low[lane]), high = allLanes(batch.depth_high[lane]);
   for (int row = first_row; row <= last_row; ++row) {
-    std::size_t block = static_cast<std::size_t>(row) * blocks_per_row_ + first_column;
+    std::size_t block = static_cast<std::size_t>(row) * blocks_across_ + first_column;
     // Depth is evaluated anew in every block, not summed up: a sum would depend on the number of lanes.
     const FloatLanes row_depth = first_depth + depth_y * offset_y;
     FloatLanes x = offset_x;

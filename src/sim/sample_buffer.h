@@ -13,18 +13,22 @@ class SampleBuffer {
  public:
   static constexpr int kBlockWidth = kLanes == 4 ? 2 : 4;
   static constexpr int kBlockHeight = kLanes / kBlockWidth;
+  static constexpr int kPixelsAcross = kBlockWidth / 2, kPixelsDown = kBlockHeight / 2;  ///< of a block
 
   /// @param width, height [samples], multiples of the block's.
   SampleBuffer(int width, int height, bool with_ids);
 
   int width() const { return width_; }
   int height() const { return height_; }
+  int blocksAcross() const { return blocks_across_; }
+  int blocksDown() const { return height_ / kBlockHeight; }
+  /// Block after block, from left to right and from top to bottom.
   const std::int32_t* ids() const { return reinterpret_cast<const std::int32_t*>(ids_.data()); }
 
   /// Where pixel (x, y)'s four samples begin in ids().
   int pixelOffset(int x, int y) const {
-    const int block = 2 * y / kBlockHeight * blocks_per_row_ + 2 * x / kBlockWidth;
-    return block * kLanes + 4 * (y % (kBlockHeight / 2) * kPixelsAcross + x % kPixelsAcross);
+    const int block = y / kPixelsDown * blocks_across_ + x / kPixelsAcross;
+    return block * kLanes + 4 * (y % kPixelsDown * kPixelsAcross + x % kPixelsAcross);
   }
 
   /// All depths, row by row.
@@ -38,14 +42,12 @@ class SampleBuffer {
   void fill(const TriangleBatch& batch, int lane, std::int32_t id);
 
  private:
-  static constexpr int kPixelsAcross = kBlockWidth / 2;
-
   template <bool kWithIds>
   void fillBlocks(const TriangleBatch& batch, int lane, std::int32_t id);
 
   int width_;
   int height_;
-  int blocks_per_row_;
+  int blocks_across_;
   std::vector<FloatLanes> depth_;
   std::vector<IntLanes> ids_;
 };

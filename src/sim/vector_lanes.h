@@ -79,6 +79,18 @@ inline FloatLanes squareRoot(FloatLanes a) {
 #endif
 }
 
+namespace detail {
+
+template <int... I>
+IntLanes firstOfFours(IntLanes a, std::integer_sequence<int, I...>) {
+  return __builtin_shufflevector(a, a, (I / 4 * 4)...);
+}
+
+}  // namespace detail
+
+/// Every lane takes the first of its four: a[0] four times, a[4] four times, ...
+inline IntLanes firstOfFours(IntLanes a) { return detail::firstOfFours(a, std::make_integer_sequence<int, kLanes>()); }
+
 /// base[index] in every lane; Lanes is IntLanes or FloatLanes, of which base holds the elements.
 template <class Lanes>
 Lanes gather(const void* base, IntLanes index) {
