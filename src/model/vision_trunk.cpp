@@ -144,13 +144,18 @@ void VisionTrunk<T>::backwardBlock(int block, const ViewBatch& batch, const nn::
 }
 
 template <class T>
+nn::MapLayout VisionTrunk<T>::predictionLayout(int block) const {
+  return block < kBlocks ? blocks_[block].predictionLayout() : nn::MapLayout::kChannelsLast;
+}
+
+template <class T>
 void VisionTrunk<T>::predict(int thread, const Frames& frames, const float* goal, float* features) {
   Scratch& scratch = scratch_[thread];
   nn::stackFrames(frames.data(), pixels(), scratch.input.data());
   T* in = scratch.input.data();
   T* out = scratch.output.data();
-  for (nn::ConvBlock<T>& block : blocks_) {
-    block.predict(thread, in, goal, scratch.convolution.data(), out);
+  for (int b = 0; b < kBlocks; ++b) {
+    blocks_[b].predict(thread, in, goal, scratch.convolution.data(), predictionLayout(b + 1), out);
     std::swap(in, out);
   }
   writeFeatures(in, features);
@@ -162,8 +167,8 @@ void VisionTrunk<T>::predictOnAllThreads(const Frames& frames, const float* goal
   nn::stackFrames(frames.data(), pixels(), scratch.input.data());
   T* in = scratch.input.data();
   T* out = scratch.output.data();
-  for (nn::ConvBlock<T>& block : blocks_) {
-    block.predictOnAllThreads(in, goal, scratch.convolution.data(), out, threads_);
+  for (int b = 0; b < kBlocks; ++b) {
+    blocks_[b].predictOnAllThreads(in, goal, scratch.convolution.data(), predictionLayout(b + 1), out, threads_);
     std::swap(in, out);
   }
   writeFeatures(in, features);

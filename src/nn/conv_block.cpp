@@ -148,21 +148,22 @@ void ConvBlock<T>::finishBackward(int images, const ImageShares& shares, const M
 }
 
 template <class T>
-void ConvBlock<T>::predict(int thread, const T* x, const float* goal, T* y, T* out) {
+void ConvBlock<T>::predict(int thread, const T* x, const float* goal, T* y, MapLayout out_layout, T* out) {
   float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
   goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
-  convolution_.forward(thread, x, y);
-  poolNormalise(mapShape(), y, border_bias, norm_.inferenceScale(), norm_.inferenceShift(), 0, shape_.size / 2, out);
+  convolution_.predict(thread, x, y);
+  poolNormalise(predictionShape(), y, border_bias, norm_.inferenceScale(), norm_.inferenceShift(), 0, shape_.size / 2,
+                out_layout, out);
 }
 
 template <class T>
-void ConvBlock<T>::predictOnAllThreads(const T* x, const float* goal, T* y, T* out, int threads) {
+void ConvBlock<T>::predictOnAllThreads(const T* x, const float* goal, T* y, MapLayout out_layout, T* out, int threads) {
   goal_.forward(goal, parameters_.values().data() + bias_, border_bias_.data());
-  convolution_.forwardOnAllThreads(x, y);
+  convolution_.predictOnAllThreads(x, y);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int row = 0; row < shape_.size / 2; ++row) {
-    poolNormalise(mapShape(), y, border_bias_.data(), norm_.inferenceScale(), norm_.inferenceShift(), row, row + 1,
-                  out);
+    poolNormalise(predictionShape(), y, border_bias_.data(), norm_.inferenceScale(), norm_.inferenceShift(), row,
+                  row + 1, out_layout, out);
   }
 }
 

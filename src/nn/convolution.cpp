@@ -2,8 +2,9 @@
 
 #include <omp.h>
 
-#include <array>
+#include <algorithm>
 #include <dnnl.hpp>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -69,6 +70,14 @@ class Call {
   std::vector<dnnl_exec_arg_t> arguments_;
 };
 
+// With fewer the library's direct kernels are as fast as Winograd's.
+constexpr int kFewestWinogradChannels = 64;
+
+bool suitsWinograd(const ConvolutionShape& shape) {
+  return std::min(shape.in_channels, shape.out_channels) >= kFewestWinogradChannels &&
+         shape.in_channels % kLanes == 0 && shape.out_channels % kLanes == 0;
+}
+
 dnnl::memory unbound(const dnnl::memory::desc& description) { return {description, cpu(), DNNL_MEMORY_NONE}; }
 
 void reorder(dnnl::memory from, dnnl::memory to) {
@@ -96,23 +105,26 @@ class Convolution<T>::Implementation {
     attributes_.set_scratchpad_mode(dnnl::scratchpad_mode::user);
     {
       const ScopedThreadCount one(1);
-      const auto hint = addForward(threads, forward_, forward_weights_);
+      const auto hint = directForward();
+      addForward(hint, threads, forward_, forward_weights_);
       addBackwardWeights(hint, threads);
       if (input_gradient) addBackwardInput(hint, threads);
     }
-    const ScopedThreadCount all(threads);
-    if (threads > 1) addForward(1, wide_forward_, wide_weights_);
+    addPrediction(threads);
   }
 
   void setWeights(const float* oihw) {
     const dnnl::memory source(oihw_, cpu(), const_cast<float*>(oihw));
     reorder(source, forward_weights_);
-    if (!wide_forward_.empty()) reorder(source, wide_weights_);
+    if (predict_weights_) reorder(source, predict_weights_);
+    reorder(source, wide_weights_);
     if (!backward_input_.empty()) reorder(source, backward_weights_);
   }
 
   void forward(int thread, const T* x, T* y) { run(forward_[thread], x, y); }
-  void forwardOnAllThreads(const T* x, T* y) { run(wide_forward_.empty() ? forward_[0] : wide_forward_[0], x, y); }
+  void predict(int thread, const T* x, T* y) { run((winograd_ ? predict_ : forward_)[thread], x, y); }
+  void predictOnAllThreads(const T* x, T* y) { run(wide_predict_[0], x, y); }
+  MapLayout predictionLayout() const { return winograd_ ? MapLayout::kBlocked : MapLayout::kChannelsLast; }
   void backwardInput(int thread, const T* dy, T* dx) { run(backward_input_[thread], dy, dx); }
 
   void backwardWeights(int thread, const T* x, const T* dy, float* dweights) {
@@ -140,21 +152,59 @@ class Convolution<T>::Implementation {
     return {description, cpu(), scratch_.back().data()};
   }
 
-  dnnl::convolution_forward::primitive_desc addForward(int count, std::vector<Call>& calls, dnnl::memory& weights) {
-    const dnnl::convolution_forward::desc operation(dnnl::prop_kind::forward_training,
-                                                    dnnl::algorithm::convolution_direct, x_, weights_, y_, {1, 1},
-                                                    {1, 1}, {1, 1});
-    const dnnl::convolution_forward::primitive_desc chosen(operation, attributes_, cpu());
+  using Forward = dnnl::convolution_forward::primitive_desc;
+
+  Forward directForward() const {
+    return {{dnnl::prop_kind::forward_training,
+             dnnl::algorithm::convolution_direct,
+             x_,
+             weights_,
+             y_,
+             {1, 1},
+             {1, 1},
+             {1, 1}},
+            attributes_,
+            cpu()};
+  }
+
+  /// Empty where the library has no kernel for this processor.
+  Forward winogradForward() const {
+    static_assert(kLanes == 16);
+    const dnnl::memory::desc x(x_.dims(), elementType<T>(), Tag::nChw16c), y(y_.dims(), elementType<T>(), Tag::nChw16c);
+    return {{dnnl::prop_kind::forward_inference,
+             dnnl::algorithm::convolution_winograd,
+             x,
+             weights_,
+             y,
+             {1, 1},
+             {1, 1},
+             {1, 1}},
+            attributes_,
+            cpu(),
+            true};
+  }
+
+  void addPrediction(int threads) {
+    if (std::is_same_v<T, float> && suitsWinograd(shape_)) {
+      const ScopedThreadCount one(1);
+      const Forward chosen = winogradForward();
+      winograd_ = bool(chosen);
+      if (winograd_) addForward(chosen, threads, predict_, predict_weights_);
+    }
+    const ScopedThreadCount all(threads);
+    addForward(winograd_ ? winogradForward() : directForward(), 1, wide_predict_, wide_weights_);
+  }
+
+  void addForward(const Forward& chosen, int count, std::vector<Call>& calls, dnnl::memory& weights) {
     const dnnl::convolution_forward primitive(chosen);
     weights = dnnl::memory(chosen.weights_desc(), cpu());
     for (int i = 0; i < count; ++i) {
       calls.push_back({primitive,
-                       {{DNNL_ARG_SRC, unbound(x_)},
-                        {DNNL_ARG_DST, unbound(y_)},
+                       {{DNNL_ARG_SRC, unbound(chosen.src_desc())},
+                        {DNNL_ARG_DST, unbound(chosen.dst_desc())},
                         {DNNL_ARG_WEIGHTS, weights},
                         {DNNL_ARG_SCRATCHPAD, scratchpad(chosen.scratchpad_desc())}}});
     }
-    return chosen;
   }
 
   void addBackwardWeights(const dnnl::convolution_forward::primitive_desc& hint, int count) {
@@ -191,9 +241,10 @@ class Convolution<T>::Implementation {
   ConvolutionShape shape_;
   dnnl::memory::desc x_, y_, weights_, oihw_, dweights_;
   dnnl::primitive_attr attributes_;
-  dnnl::memory forward_weights_, wide_weights_, backward_weights_;
+  bool winograd_ = false;  // predict() is by it
+  dnnl::memory forward_weights_, predict_weights_, wide_weights_, backward_weights_;
   std::vector<AlignedBuffer<std::uint8_t>> scratch_;
-  std::vector<Call> forward_, wide_forward_, weights_gradient_, backward_input_;
+  std::vector<Call> forward_, predict_, wide_predict_, weights_gradient_, backward_input_;
 };
 
 template <class T>
@@ -228,8 +279,18 @@ void Convolution<T>::forward(int thread, const T* x, T* y) {
 }
 
 template <class T>
-void Convolution<T>::forwardOnAllThreads(const T* x, T* y) {
-  implementation_->forwardOnAllThreads(x, y);
+void Convolution<T>::predict(int thread, const T* x, T* y) {
+  implementation_->predict(thread, x, y);
+}
+
+template <class T>
+MapLayout Convolution<T>::predictionLayout() const {
+  return implementation_->predictionLayout();
+}
+
+template <class T>
+void Convolution<T>::predictOnAllThreads(const T* x, T* y) {
+  implementation_->predictOnAllThreads(x, y);
 }
 
 template <class T>

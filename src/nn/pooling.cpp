@@ -31,7 +31,7 @@ Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int 
     const int py = 2 * row + q / 2;
     const int px = 2 * column + q % 2;
     const int border = 3 * borderCase(py, shape.height) + borderCase(px, shape.width);
-    v[q] = loadLanes(y + (std::size_t(py) * shape.width + px) * shape.channels + c) +
+    v[q] = loadLanes(y + shape.firstOf(c) + (std::size_t(py) * shape.width + px) * shape.stride()) +
            loadLanes(bias + border * shape.channels + c);
   }
   return greatest(v[0], v[1], v[2], v[3]);
@@ -41,19 +41,19 @@ Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int 
 template <class T, class Sink>
 inline void poolRow(const MapShape& shape, const T* y, const float* bias, int row, int c, const Sink& sink) {
   const int columns = shape.width / 2;
-  const int channels = shape.channels;
+  const std::size_t stride = shape.stride();
   if (row == 0 || row == shape.height / 2 - 1) {
     for (int column = 0; column < columns; ++column) sink(column, borderWindow(shape, y, bias, row, column, c));
     return;
   }
-  const Lanes inner_bias = loadLanes(bias + 4 * channels + c);
-  const T* top = y + std::size_t(2 * row) * shape.width * channels + c;
-  const T* bottom = top + std::size_t(shape.width) * channels;
+  const Lanes inner_bias = loadLanes(bias + 4 * shape.channels + c);
+  const T* top = y + shape.firstOf(c) + std::size_t(2 * row) * shape.width * stride;
+  const T* bottom = top + shape.width * stride;
   sink(0, borderWindow(shape, y, bias, row, 0, c));
   for (int column = 1; column < columns - 1; ++column) {
-    const std::size_t left = std::size_t(2 * column) * channels;
-    Greatest best = greatest(loadLanes(top + left), loadLanes(top + left + channels), loadLanes(bottom + left),
-                             loadLanes(bottom + left + channels));
+    const std::size_t left = 2 * column * stride;
+    Greatest best = greatest(loadLanes(top + left), loadLanes(top + left + stride), loadLanes(bottom + left),
+                             loadLanes(bottom + left + stride));
     best.value += inner_bias;
     sink(column, best);
   }
@@ -99,15 +99,15 @@ void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std
 
 template <class T>
 void poolNormalise(const MapShape& shape, const T* y, const float* bias, const float* scale, const float* shift,
-                   int first_row, int last_row, T* x) {
-  const int channels = shape.channels;
+                   int first_row, int last_row, MapLayout pooled_layout, T* x) {
+  const MapShape pooled = shape.pooled(pooled_layout);
   for (int row = first_row; row < last_row; ++row) {
-    for (int c = 0; c < channels; c += kLanes) {
-      T* out = x + std::size_t(row) * (shape.width / 2) * channels + c;
+    for (int c = 0; c < shape.channels; c += kLanes) {
+      T* out = x + pooled.firstOf(c) + row * pooled.width * pooled.stride();
       const Lanes scales = loadLanes(scale + c);
       const Lanes shifts = loadLanes(shift + c);
       poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
-        storeLanes(out + std::size_t(column) * channels, scales * relu(best.value) + shifts);
+        storeLanes(out + column * pooled.stride(), scales * relu(best.value) + shifts);
       });
     }
   }
@@ -217,7 +217,8 @@ void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uin
 
 #define EARLY_FUSION_INSTANTIATE(T)                                                                                  \
   template void poolForward<T>(const MapShape&, const T*, const float*, T*, std::uint8_t*, double*);                 \
-  template void poolNormalise<T>(const MapShape&, const T*, const float*, const float*, const float*, int, int, T*); \
+  template void poolNormalise<T>(const MapShape&, const T*, const float*, const float*, const float*, int, int,      \
+                                 MapLayout, T*);                                                                     \
   template void normalise<T>(const T*, int, int, const float*, const float*, T*);                                    \
   template void sumGradients<T>(const T*, const T*, int, int, double*);                                              \
   template void poolBackward<T>(const MapShape&, const T*, const T*, const std::uint8_t*, const NormGradient&, bool, \

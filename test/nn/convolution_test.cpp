@@ -27,27 +27,59 @@ class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
   }
 
   template <class T>
+  static Numbers numbers(const AlignedBuffer<T>& buffer) {
+    Numbers numbers;
+    for (std::size_t i = 0; i < buffer.size(); ++i) numbers.push_back(toFloat(buffer[i]));
+    return numbers;
+  }
+
+  template <class T>
+  AlignedBuffer<T> inLayout(const AlignedBuffer<T>& channels_last, int channels, MapLayout layout) const {
+    AlignedBuffer<T> buffer(channels_last.size());
+    const MapShape map{shape.height, shape.width, channels, layout};
+    for (int p = 0; p < map.positions(); ++p) {
+      for (int c = 0; c < channels; ++c) {
+        buffer[map.at(p, c)] = channels_last[std::size_t(p) * channels + c];
+      }
+    }
+    return buffer;
+  }
+
+  template <class T>
   double forwardError() {
     Convolution<T> convolution(shape, false, 2);
     convolution.setWeights(stored<float>(weights).data());
     const AlignedBuffer<T> in = stored<T>(x);
     const Numbers expected =
         naiveConvolution(x, weights, shape.height, shape.width, shape.in_channels, shape.out_channels);
-    AlignedBuffer<T> out(expected.size()), second(expected.size()), wide(expected.size());
+    AlignedBuffer<T> out(expected.size()), second(expected.size());
     convolution.forward(0, in.data(), out.data());
     convolution.forward(1, in.data(), second.data());
-    convolution.forwardOnAllThreads(in.data(), wide.data());
     EXPECT_EQ(std::memcmp(out.data(), second.data(), expected.size() * sizeof(T)), 0);
-    EXPECT_EQ(std::memcmp(out.data(), wide.data(), expected.size() * sizeof(T)), 0);
-    Numbers result;
-    for (std::size_t i = 0; i < expected.size(); ++i) result.push_back(toFloat(out[i]));
-    return worstError(result, expected);
+
+    const MapLayout layout = convolution.predictionLayout();
+    const AlignedBuffer<T> laid_out = inLayout(in, shape.in_channels, layout);
+    AlignedBuffer<T> predicted(expected.size()), wide(expected.size());
+    convolution.predict(0, laid_out.data(), predicted.data());
+    convolution.predict(1, laid_out.data(), second.data());
+    convolution.predictOnAllThreads(laid_out.data(), wide.data());
+    EXPECT_EQ(std::memcmp(predicted.data(), second.data(), expected.size() * sizeof(T)), 0);
+    EXPECT_EQ(std::memcmp(predicted.data(), wide.data(), expected.size() * sizeof(T)), 0);
+    const AlignedBuffer<T> same = inLayout(out, shape.out_channels, layout);
+    return std::max(worstError(numbers(out), expected), worstError(numbers(predicted), numbers(same)));
   }
 
   core::Random random{31};
   ConvolutionShape shape{};
   Numbers x, weights;
 };
+
+TEST_P(ConvolutionTest, PredictsByWinogradWhereThereAreManyChannels) {
+  if (!processorHasBfloat16()) GTEST_SKIP() << "this processor may lack the kernels";
+  const bool many = std::min(shape.in_channels, shape.out_channels) >= 64;
+  EXPECT_EQ(Convolution<float>(shape, false, 1).predictionLayout() == MapLayout::kBlocked, many);
+  EXPECT_EQ(Convolution<bfloat16>(shape, false, 1).predictionLayout(), MapLayout::kChannelsLast);
+}
 
 TEST_P(ConvolutionTest, IsTheNaiveOneOnEveryThread) { EXPECT_LT(forwardError<float>(), 1e-5); }
 
@@ -59,6 +91,7 @@ TEST_P(ConvolutionTest, InBfloat16IsCloseToTheNaiveOne) {
 INSTANTIATE_TEST_SUITE_P(Shapes, ConvolutionTest,
                          testing::Values(std::array<int, 4>{128, 128, 9, 16}, std::array<int, 4>{6, 10, 16, 32},
                                          std::array<int, 4>{2, 2, 64, 64}, std::array<int, 4>{64, 64, 16, 16},
+                                         std::array<int, 4>{16, 16, 64, 64}, std::array<int, 4>{32, 24, 128, 64},
                                          std::array<int, 4>{32, 32, 32, 32}));
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(Pooling, AddsEachPixelsOwnBias) {
     std::vector<float> bias(kBorderCases * kLanes, 0.f), x(9 * kLanes);
     for (int c = 0; c < kLanes; ++c) bias[border * kLanes + c] = 1.f + c;
     const std::vector<float> ones(kLanes, 1.f), zeros(kLanes, 0.f);
-    poolNormalise(shape, y.data(), bias.data(), ones.data(), zeros.data(), 0, 3, x.data());
+    poolNormalise(shape, y.data(), bias.data(), ones.data(), zeros.data(), 0, 3, MapLayout::kChannelsLast, x.data());
     for (int window = 0; window < 9; ++window) {
       bool touched = false;
       for (int q = 0; q < 4; ++q) {

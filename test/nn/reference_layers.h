@@ -191,13 +191,17 @@ struct FastConvBlock {
   Numbers predict(bool all_threads) {
     block.loadRunningStatistics();
     Numbers all;
-    AlignedBuffer<T> out(block.outputSize());
+    AlignedBuffer<T> in(inputSize()), out(block.outputSize());
+    const ConvBlockShape& shape = block.shape();
+    const MapShape map{shape.size, shape.size, shape.stored_channels, block.predictionLayout()};
     for (int i = 0; i < images; ++i) {
-      const T* in = x.data() + i * inputSize();
+      for (std::size_t j = 0; j < inputSize(); ++j) {
+        in[map.at(j / map.channels, j % map.channels)] = x[i * inputSize() + j];
+      }
       if (all_threads) {
-        block.predictOnAllThreads(in, goal(i), scratchOf(0), out.data(), threads);
+        block.predictOnAllThreads(in.data(), goal(i), scratchOf(0), MapLayout::kChannelsLast, out.data(), threads);
       } else {
-        block.predict(i % threads, in, goal(i), scratchOf(i % threads), out.data());
+        block.predict(i % threads, in.data(), goal(i), scratchOf(i % threads), MapLayout::kChannelsLast, out.data());
       }
       for (int j = 0; j < block.outputSize(); ++j) all.push_back(toFloat(out[j]));
     }

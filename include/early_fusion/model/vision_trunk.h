@@ -82,6 +82,8 @@ class VisionTrunk {
   int firstMap(const ViewBatch& batch, int block, int convolution) const;
   const T* blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch);
   void backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
+  /// How what comes before a block must be laid out for predict(); `block` may be the one after the last.
+  nn::MapLayout predictionLayout(int block) const;
   void writeFeatures(const T* map, float* features) const;
 
   VisionTrunkShape shape_;

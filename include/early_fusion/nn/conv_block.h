@@ -87,12 +87,16 @@ class ConvBlock {
   /// @param shares of the convolutions.
   void finishBackward(int images, const ImageShares& shares, const Matrix& goals, Matrix& dgoals, int threads);
 
-  /// Inference with running statistics: x, goal, y as in convolve() and pool() -> out (size/2,size/2,out).
-  void predict(int thread, const T* x, const float* goal, T* y, T* out);
+  /// How predict() wants its input.
+  MapLayout predictionLayout() const { return convolution_.predictionLayout(); }
+  /// Inference with running statistics: x (size,size,stored) in predictionLayout(), goal as in pool(), y for what comes
+  /// in between -> out (size/2,size/2,out) in `out_layout`.
+  void predict(int thread, const T* x, const float* goal, T* y, MapLayout out_layout, T* out);
   /// The same bits with all threads on one image.
-  void predictOnAllThreads(const T* x, const float* goal, T* y, T* out, int threads);
+  void predictOnAllThreads(const T* x, const float* goal, T* y, MapLayout out_layout, T* out, int threads);
 
  private:
+  MapShape predictionShape() const { return {shape_.size, shape_.size, shape_.out_channels, predictionLayout()}; }
   void writeWeightsGradient(int shares, int threads);
 
   ConvBlockShape shape_;

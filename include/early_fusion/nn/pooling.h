@@ -2,18 +2,9 @@
 
 #include <cstdint>
 
-#include "early_fusion/nn/lanes.h"
+#include "early_fusion/nn/map_shape.h"
 
 namespace early_fusion::nn {
-
-/// A map of one image, (height, width, channels), before pooling; even edges, channels a multiple of kLanes.
-struct MapShape {
-  int height;
-  int width;
-  int channels;
-
-  int pooledPositions() const { return height / 2 * (width / 2); }
-};
 
 /// A bias that depends on where a pixel is: (row case, column case, channel), 3x3 cases. Case 0 is the first row
 /// (column), 2 the last, 1 all between: what zero padding does to a constant input of a 3x3 convolution.
@@ -28,10 +19,10 @@ template <class T>
 void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std::uint8_t* choice, double* sums);
 
 /// The same for inference, with batch norm's scale and shift (C) applied: x = scale * z + shift, pooled rows
-/// [first_row, last_row) only.
+/// [first_row, last_row) only. y in the shape's layout, x in `pooled_layout`; everything else is channels-last.
 template <class T>
 void poolNormalise(const MapShape& shape, const T* y, const float* bias, const float* scale, const float* shift,
-                   int first_row, int last_row, T* x);
+                   int first_row, int last_row, MapLayout pooled_layout, T* x);
 
 /// Batch norm in training, z (positions, C) -> x = scale * z + shift.
 template <class T>
