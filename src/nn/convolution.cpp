@@ -105,7 +105,7 @@ class Convolution<T>::Implementation {
     attributes_.set_scratchpad_mode(dnnl::scratchpad_mode::user);
     {
       const ScopedThreadCount one(1);
-      const auto hint = directForward();
+      const auto hint = direct();
       addForward(hint, threads, forward_, forward_weights_);
       addBackwardWeights(hint, threads);
       if (input_gradient) addBackwardInput(hint, threads);
@@ -122,9 +122,9 @@ class Convolution<T>::Implementation {
   }
 
   void forward(int thread, const T* x, T* y) { run(forward_[thread], x, y); }
-  void predict(int thread, const T* x, T* y) { run((winograd_ ? predict_ : forward_)[thread], x, y); }
+  void predict(int thread, const T* x, T* y) { run((predicts_by_winograd_ ? predict_ : forward_)[thread], x, y); }
   void predictOnAllThreads(const T* x, T* y) { run(wide_predict_[0], x, y); }
-  MapLayout predictionLayout() const { return winograd_ ? MapLayout::kBlocked : MapLayout::kChannelsLast; }
+  MapLayout predictionLayout() const { return predicts_by_winograd_ ? MapLayout::kBlocked : MapLayout::kChannelsLast; }
   void backwardInput(int thread, const T* dy, T* dx) { run(backward_input_[thread], dy, dx); }
 
   void backwardWeights(int thread, const T* x, const T* dy, float* dweights) {
@@ -154,45 +154,30 @@ class Convolution<T>::Implementation {
 
   using Forward = dnnl::convolution_forward::primitive_desc;
 
-  Forward directForward() const {
-    return {{dnnl::prop_kind::forward_training,
-             dnnl::algorithm::convolution_direct,
-             x_,
-             weights_,
-             y_,
-             {1, 1},
-             {1, 1},
-             {1, 1}},
-            attributes_,
-            cpu()};
-  }
+  Forward direct() const { return choose(dnnl::algorithm::convolution_direct, Tag::nhwc, false); }
 
   /// Empty where the library has no kernel for this processor.
-  Forward winogradForward() const {
+  Forward winograd() const {
     static_assert(kLanes == 16);
-    const dnnl::memory::desc x(x_.dims(), elementType<T>(), Tag::nChw16c), y(y_.dims(), elementType<T>(), Tag::nChw16c);
-    return {{dnnl::prop_kind::forward_inference,
-             dnnl::algorithm::convolution_winograd,
-             x,
-             weights_,
-             y,
-             {1, 1},
-             {1, 1},
-             {1, 1}},
-            attributes_,
-            cpu(),
-            true};
+    return choose(dnnl::algorithm::convolution_winograd, Tag::nChw16c, true);
+  }
+
+  Forward choose(dnnl::algorithm algorithm, Tag layout, bool allow_empty) const {
+    const dnnl::memory::desc x(x_.dims(), elementType<T>(), layout), y(y_.dims(), elementType<T>(), layout);
+    const dnnl::convolution_forward::desc operation(dnnl::prop_kind::forward_training, algorithm, x, weights_, y,
+                                                    {1, 1}, {1, 1}, {1, 1});
+    return {operation, attributes_, cpu(), allow_empty};
   }
 
   void addPrediction(int threads) {
     if (std::is_same_v<T, float> && suitsWinograd(shape_)) {
       const ScopedThreadCount one(1);
-      const Forward chosen = winogradForward();
-      winograd_ = bool(chosen);
-      if (winograd_) addForward(chosen, threads, predict_, predict_weights_);
+      const Forward chosen = winograd();
+      predicts_by_winograd_ = bool(chosen);
+      if (predicts_by_winograd_) addForward(chosen, threads, predict_, predict_weights_);
     }
     const ScopedThreadCount all(threads);
-    addForward(winograd_ ? winogradForward() : directForward(), 1, wide_predict_, wide_weights_);
+    addForward(predicts_by_winograd_ ? winograd() : direct(), 1, wide_predict_, wide_weights_);
   }
 
   void addForward(const Forward& chosen, int count, std::vector<Call>& calls, dnnl::memory& weights) {
@@ -241,7 +226,7 @@ class Convolution<T>::Implementation {
   ConvolutionShape shape_;
   dnnl::memory::desc x_, y_, weights_, oihw_, dweights_;
   dnnl::primitive_attr attributes_;
-  bool winograd_ = false;  // predict() is by it
+  bool predicts_by_winograd_ = false;
   dnnl::memory forward_weights_, predict_weights_, wide_weights_, backward_weights_;
   std::vector<AlignedBuffer<std::uint8_t>> scratch_;
   std::vector<Call> forward_, predict_, wide_predict_, weights_gradient_, backward_input_;

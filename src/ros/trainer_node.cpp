@@ -133,7 +133,7 @@ void TrainerNode::evaluate() {
   evaluation_.task = session_->task().name;
   evaluation_.seed = learning::kHeldOutSeed;
   if (episodes == 0) return finish();
-  const auto keep = [this, episodes](learning::Trajectory trajectory) {
+  const auto keep = [this, episodes](const learning::Trajectory& trajectory) {
     evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };

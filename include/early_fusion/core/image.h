@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct Image {
 
   Image() = default;
   Image(int image_width, int image_height)
-      : width(image_width), height(image_height), rgb(3u * image_width * image_height) {}
+      : width(image_width), height(image_height), rgb(std::size_t(3) * image_width * image_height) {}
 };
 
 }  // namespace early_fusion::core

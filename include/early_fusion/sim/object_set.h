@@ -39,6 +39,7 @@ class ObjectSet {
  private:
   static core::Vocabulary namesOf(const std::vector<Object>& objects) {
     std::vector<std::string> names;
+    names.reserve(objects.size());
     for (const Object& object : objects) names.push_back(object.name);
     return core::Vocabulary(names);
   }
