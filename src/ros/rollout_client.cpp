@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kStepQueue = 512;  // some ten episodes: the simulator does not wait for who only listens
 constexpr double kSupervisionSec = 0.1;
+constexpr double kPatienceSec = 2.0;   // before people are told what is being waited for
 constexpr double kStragglerSec = 1.0;  // after a goal's end, how long its last messages may take
 
 }  // namespace
@@ -45,6 +46,7 @@ void RolloutClient::start(const RolloutPlan& plan, std::function<void(learning::
   on_trajectory_ = std::move(on_trajectory);
   on_done_ = std::move(on_done);
   phase_ = Phase::kWaiting;
+  last_news_ = ::ros::WallTime::now();
   askWhenReady();
 }
 
@@ -72,7 +74,8 @@ void RolloutClient::askWhenReady() {
   if (phase_ != Phase::kWaiting) return;
   const std::string missing = obstacle();
   if (!missing.empty()) {
-    ROS_INFO_THROTTLE(10, "waiting for %s", missing.c_str());
+    const bool is_late = ::ros::WallTime::now() - last_news_ > ::ros::WallDuration(kPatienceSec);
+    if (is_late) ROS_INFO_THROTTLE(10, "waiting for %s", missing.c_str());
     return;
   }
   const auto [first, last] = recorder_->missing();

@@ -69,7 +69,7 @@ class RolloutClient {
   std::function<void(learning::Trajectory)> on_trajectory_;
   std::function<void()> on_done_;
   bool goal_done_ = false;
-  ::ros::WallTime last_news_;  // of the goal: sent, a step, done
+  ::ros::WallTime last_news_;  // of the plan: begun, sent as a goal, a step, done
 
   PolicyStatusConstPtr policy_status_;
   ::ros::Subscriber policy_status_subscriber_;
