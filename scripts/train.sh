@@ -56,6 +56,7 @@ import json, sys
 result = json.load(open(sys.argv[1]))
 print(result["task"], result["episodes"])' "$output/result.json")
 shipped="models/$task.safetensors"
+[ -f "$shipped" ] || shipped=models/medium.safetensors  # does other tasks, too
 case " $* " in *" world:="*) shipped="" ;; esac
 if [ -f "$shipped" ] && [ "$episodes" -gt 0 ]; then
   comparison=$(mktemp)
