@@ -116,15 +116,15 @@ class Convolution<T>::Implementation {
   void setWeights(const float* oihw) {
     const dnnl::memory source(oihw_, cpu(), const_cast<float*>(oihw));
     reorder(source, forward_weights_);
-    if (predict_weights_) reorder(source, predict_weights_);
-    reorder(source, wide_weights_);
+    if (!predict_.empty()) reorder(source, predict_weights_);
+    if (!wide_predict_.empty()) reorder(source, wide_weights_);
     if (!backward_input_.empty()) reorder(source, backward_weights_);
   }
 
   void forward(int thread, const T* x, T* y) { run(forward_[thread], x, y); }
-  void predict(int thread, const T* x, T* y) { run((predicts_by_winograd_ ? predict_ : forward_)[thread], x, y); }
-  void predictOnAllThreads(const T* x, T* y) { run(wide_predict_[0], x, y); }
-  MapLayout predictionLayout() const { return predicts_by_winograd_ ? MapLayout::kBlocked : MapLayout::kChannelsLast; }
+  void predict(int thread, const T* x, T* y) { run((predict_.empty() ? forward_ : predict_)[thread], x, y); }
+  void predictOnAllThreads(const T* x, T* y) { wide_predict_.empty() ? predict(0, x, y) : run(wide_predict_[0], x, y); }
+  MapLayout predictionLayout() const { return predict_.empty() ? MapLayout::kChannelsLast : MapLayout::kBlocked; }
   void backwardInput(int thread, const T* dy, T* dx) { run(backward_input_[thread], dy, dx); }
 
   void backwardWeights(int thread, const T* x, const T* dy, float* dweights) {
@@ -173,11 +173,10 @@ class Convolution<T>::Implementation {
     if (std::is_same_v<T, float> && suitsWinograd(shape_)) {
       const ScopedThreadCount one(1);
       const Forward chosen = winograd();
-      predicts_by_winograd_ = bool(chosen);
-      if (predicts_by_winograd_) addForward(chosen, threads, predict_, predict_weights_);
+      if (chosen) addForward(chosen, threads, predict_, predict_weights_);
     }
     const ScopedThreadCount all(threads);
-    addForward(predicts_by_winograd_ ? winograd() : direct(), 1, wide_predict_, wide_weights_);
+    if (threads > 1) addForward(predict_.empty() ? direct() : winograd(), 1, wide_predict_, wide_weights_);
   }
 
   void addForward(const Forward& chosen, int count, std::vector<Call>& calls, dnnl::memory& weights) {
@@ -226,9 +225,9 @@ class Convolution<T>::Implementation {
   ConvolutionShape shape_;
   dnnl::memory::desc x_, y_, weights_, oihw_, dweights_;
   dnnl::primitive_attr attributes_;
-  bool predicts_by_winograd_ = false;
   dnnl::memory forward_weights_, predict_weights_, wide_weights_, backward_weights_;
   std::vector<AlignedBuffer<std::uint8_t>> scratch_;
+  // predict_ is empty where prediction is forward_, wide_predict_ with one thread.
   std::vector<Call> forward_, predict_, wide_predict_, weights_gradient_, backward_input_;
 };
 

@@ -33,17 +33,7 @@ class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
     return numbers;
   }
 
-  template <class T>
-  AlignedBuffer<T> inLayout(const AlignedBuffer<T>& channels_last, int channels, MapLayout layout) const {
-    AlignedBuffer<T> buffer(channels_last.size());
-    const MapShape map{shape.height, shape.width, channels, layout};
-    for (int p = 0; p < map.positions(); ++p) {
-      for (int c = 0; c < channels; ++c) {
-        buffer[map.at(p, c)] = channels_last[std::size_t(p) * channels + c];
-      }
-    }
-    return buffer;
-  }
+  MapShape mapOf(int channels, MapLayout layout) const { return {shape.height, shape.width, channels, layout}; }
 
   template <class T>
   double forwardError() {
@@ -58,14 +48,14 @@ class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
     EXPECT_EQ(std::memcmp(out.data(), second.data(), expected.size() * sizeof(T)), 0);
 
     const MapLayout layout = convolution.predictionLayout();
-    const AlignedBuffer<T> laid_out = inLayout(in, shape.in_channels, layout);
+    const AlignedBuffer<T> laid_out = inLayout(in.data(), mapOf(shape.in_channels, layout));
     AlignedBuffer<T> predicted(expected.size()), wide(expected.size());
     convolution.predict(0, laid_out.data(), predicted.data());
     convolution.predict(1, laid_out.data(), second.data());
     convolution.predictOnAllThreads(laid_out.data(), wide.data());
     EXPECT_EQ(std::memcmp(predicted.data(), second.data(), expected.size() * sizeof(T)), 0);
     EXPECT_EQ(std::memcmp(predicted.data(), wide.data(), expected.size() * sizeof(T)), 0);
-    const AlignedBuffer<T> same = inLayout(out, shape.out_channels, layout);
+    const AlignedBuffer<T> same = inLayout(out.data(), mapOf(shape.out_channels, layout));
     return std::max(worstError(numbers(out), expected), worstError(numbers(predicted), numbers(same)));
   }
 

@@ -117,6 +117,16 @@ struct NaiveConvBlock {
   }
 };
 
+/// A channels-last map in another layout.
+template <class T>
+AlignedBuffer<T> inLayout(const T* channels_last, const MapShape& map) {
+  AlignedBuffer<T> numbers(std::size_t(map.positions()) * map.channels);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[map.at(i / map.channels, i % map.channels)] = channels_last[i];
+  }
+  return numbers;
+}
+
 /// A ConvBlock with the naive one's numbers, and what it makes of them.
 template <class T>
 struct FastConvBlock {
@@ -191,13 +201,11 @@ struct FastConvBlock {
   Numbers predict(bool all_threads) {
     block.loadRunningStatistics();
     Numbers all;
-    AlignedBuffer<T> in(inputSize()), out(block.outputSize());
+    AlignedBuffer<T> out(block.outputSize());
     const ConvBlockShape& shape = block.shape();
     const MapShape map{shape.size, shape.size, shape.stored_channels, block.predictionLayout()};
     for (int i = 0; i < images; ++i) {
-      for (std::size_t j = 0; j < inputSize(); ++j) {
-        in[map.at(j / map.channels, j % map.channels)] = x[i * inputSize() + j];
-      }
+      const AlignedBuffer<T> in = inLayout(x.data() + i * inputSize(), map);
       if (all_threads) {
         block.predictOnAllThreads(in.data(), goal(i), scratchOf(0), MapLayout::kChannelsLast, out.data(), threads);
       } else {
