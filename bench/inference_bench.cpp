@@ -12,7 +12,6 @@ std::function<void()> ourPrediction(int channels, const std::string& precision, 
   return [policy, observations, probabilities] { policy->predict(observations, *probabilities); };
 }
 
-/// The image is floats before the clock starts: a head start for libtorch.
 std::function<void()> torchPrediction(int channels, torch::MemoryFormat format, const model::TorchBatch& batch) {
   auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
   for (torch::Tensor& parameter : network->parameters()) {
@@ -26,36 +25,22 @@ std::function<void()> torchPrediction(int channels, torch::MemoryFormat format, 
   };
 }
 
-void run(int rounds, const std::vector<int>& all_channels) {
-  const model::TestBatch batch(1, kImageSize, kItems, 1);
-  const model::TorchBatch torch_batch(batch.samples, kImageSize, kItems);
-  std::printf("inference of one observation, %d threads, medians of %d; ms\n", omp_get_max_threads(), rounds);
-  std::printf("channels  precision      ours  libtorch   ratio\n");
-  for (int channels : all_channels) {
-    Timing torch_default(torchPrediction(channels, torch::MemoryFormat::Contiguous, torch_batch));
-    Timing torch_last(torchPrediction(channels, torch::MemoryFormat::ChannelsLast, torch_batch));
-    Timing ours(ourPrediction(channels, "f32", batch));
-    std::vector<Timing*> timings = {&torch_default, &torch_last, &ours};
-    std::unique_ptr<Timing> half;
-    if (nn::processorHasBfloat16()) {
-      half = std::make_unique<Timing>(ourPrediction(channels, "bf16", batch));
-      timings.push_back(half.get());
-    }
-    alternate(timings, rounds);
-    const double torch_ms = std::min(torch_default.median(), torch_last.median());
-    std::printf("%8d  %-9s %9.3f %9.3f %7.3f\n", channels, "f32", ours.median(), torch_ms, ours.median() / torch_ms);
-    if (half) {
-      std::printf("%8d  %-9s %9.3f %9.3f %7.3f\n", channels, "bf16", half->median(), torch_ms,
-                  half->median() / torch_ms);
-    }
-  }
-  std::printf("libtorch: f32, the better of its default and channels-last layouts.\n");
-}
-
 }  // namespace
 }  // namespace early_fusion::bench
 
 int main(int argc, char** argv) {
+  using namespace early_fusion;
   using namespace early_fusion::bench;
-  run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 101, channelsFromArguments(argc, argv, {16, 32, 64, 128}));
+  const model::TestBatch batch(1, kImageSize, kItems, 1);
+  const model::TorchBatch torch_batch(batch.samples, kImageSize, kItems);
+  Comparison comparison{1, 1, {}, {}};
+  comparison.ours = [&](int channels, const std::string& precision) {
+    return ourPrediction(channels, precision, batch);
+  };
+  comparison.torch = [&](int channels, torch::MemoryFormat format) {
+    return torchPrediction(channels, format, torch_batch);
+  };
+  std::printf("inference of one observation, ");
+  printTable(comparison, argc > 1 ? std::max(1, std::atoi(argv[1])) : 101, channelsFromArguments(argc, argv));
+  std::printf("Winograd's algorithm (f32, 64 channels or more) needs fewer operations than the floor counts.\n");
 }

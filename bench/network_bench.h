@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "early_fusion/nn/aligned_buffer.h"
@@ -100,10 +101,74 @@ inline model::PolicyOptions policyOptions(int channels, const std::string& preci
   return options;
 }
 
-inline std::vector<int> channelsFromArguments(int argc, char** argv, std::vector<int> defaults) {
+inline std::vector<int> channelsFromArguments(int argc, char** argv) {
   std::vector<int> channels;
   for (int i = 2; i < argc; ++i) channels.push_back(std::atoi(argv[i]));
-  return channels.empty() ? defaults : channels;
+  return channels.empty() ? std::vector<int>{16, 32, 64, 128} : channels;
+}
+
+/// The same work by our network and by libtorch's. The images are floats before libtorch's clock starts: a head start.
+struct Comparison {
+  int images;  ///< that one run of the work takes
+  int passes;  ///< see networkOperations()
+  std::function<std::function<void()>(int channels, const std::string& precision)> ours;
+  std::function<std::function<void()>(int channels, torch::MemoryFormat format)> torch;
+};
+
+/// One precision's row, measured together with the others'.
+template <class T>
+class Contestant {
+ public:
+  Contestant(const Comparison& comparison, int channels, const char* precision)
+      : comparison_(comparison),
+        channels_(channels),
+        precision_(precision),
+        ours_(comparison.ours(channels, precision)),
+        peak_([this] { convolution_(); }) {}
+
+  void enter(std::vector<Timing*>& timings) { timings.insert(timings.end(), {&ours_, &peak_}); }
+
+  void print(double torch_ms) const {
+    const double ours_ms = ours_.median() / comparison_.images;
+    const double peak = convolution_.operations() / (peak_.median() * 1e-3);  // operations a second
+    const double floor_ms = networkOperations(channels_, comparison_.passes) / peak * 1e3;
+    std::printf("%8d  %-9s %9.3f %9.3f %7.3f %9.0f %9.3f %8.2f\n", channels_, precision_, ours_ms, torch_ms,
+                ours_ms / torch_ms, peak / 1e9, floor_ms, floor_ms / ours_ms);
+  }
+
+ private:
+  const Comparison& comparison_;
+  int channels_;
+  const char* precision_;
+  Timing ours_;
+  PeakConvolution<T> convolution_;
+  Timing peak_;
+};
+
+/// The table of the comparison, a row for each number of channels and precision; all of a number's in alternation.
+inline void printTable(const Comparison& comparison, int rounds, const std::vector<int>& all_channels) {
+  std::printf("%d threads, medians of %d; ms an image\n", omp_get_max_threads(), rounds);
+  std::printf("channels  precision      ours  libtorch   ratio  GFLOP/s*     floor    share\n");
+  for (int channels : all_channels) {
+    Timing torch_default(comparison.torch(channels, torch::MemoryFormat::Contiguous));
+    Timing torch_last(comparison.torch(channels, torch::MemoryFormat::ChannelsLast));
+    Contestant<float> single(comparison, channels, "f32");
+    std::unique_ptr<Contestant<nn::bfloat16>> half;
+    if (nn::processorHasBfloat16()) {
+      half = std::make_unique<Contestant<nn::bfloat16>>(comparison, channels, "bf16");
+    }
+    std::vector<Timing*> timings = {&torch_default, &torch_last};
+    single.enter(timings);
+    if (half) half->enter(timings);
+    alternate(timings, rounds);
+    const double torch_ms = std::min(torch_default.median(), torch_last.median()) / comparison.images;
+    single.print(torch_ms);
+    if (half) half->print(torch_ms);
+    std::fflush(stdout);
+  }
+  std::printf(
+      "libtorch: f32, the better of its default and channels-last layouts. *: the library's best convolution,\n"
+      "measured in the same run; floor: the network's operations at that speed; share: of our time.\n");
 }
 
 }  // namespace early_fusion::bench

@@ -35,6 +35,9 @@ core::OptionSet TrainingOptions::options() {
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
   set.addChoice("exploration", exploration, model::actionChoiceNames(), "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
+  set.add("renormalise_from", renormalise_from, 0, 100000000, "steps",
+          "of training before batch norm normalises with its running statistics, as in acting, instead of each "
+          "batch's; 0: it never does");
   set.add(
       "averaging", averaging, 0, 0.999999, "",
       "act with the running mean of the weights and statistics over training steps: the share of a step's mean that "
@@ -189,6 +192,9 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
     batch.clear();
     for (std::size_t i = first; i < last; ++i) addSamples(frames[i], batch);
     const std::uint64_t dropout_seed = core::Random(seed_, {core::kDropoutStream, rounds_, first}).next();
+    if (options_.renormalise_from > 0 && adam_.stepCount() >= options_.renormalise_from) {
+      learner_->setNormalisation(nn::Normalisation::kRunning);
+    }
     statistics.loss += learner_->lossAndGradients(batch, dropout_seed);
     adam_.step(learner_->parameters().values(), learner_->parameters().gradients(), statistics.learning_rate);
     learner_->parametersChanged();

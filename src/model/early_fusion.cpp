@@ -145,7 +145,7 @@ double EarlyFusion<T>::lossAndGradients(const std::vector<Sample>& samples, std:
   const int rows = static_cast<int>(samples.size());
 
   embedding_.forward(counts_, rows, goals_);
-  trunk_.forward(batch_, goals_, features_);
+  trunk_.forward(batch_, goals_, normalisation_, features_);
   statistics_stale_ = true;
   hidden_.forward(features_, rows, activations_);
   activations_.topRows(rows) = (activations_.topRows(rows).array() < 0.f).select(0.f, activations_.topRows(rows));

@@ -15,7 +15,6 @@ VisionTrunk<T>::VisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& 
   for (int b = 0; b < kBlocks; ++b) {
     nn::ConvBlockShape block{};
     block.image_channels = b == 0 ? nn::kImageChannels : shape.channels;
-    block.stored_channels = b == 0 ? nn::kStoredImageChannels<T> : shape.channels;
     block.goal_channels = b == shape.fusion_block ? shape.goal_channels : 0;
     block.out_channels = shape.channels;
     block.size = shape.image_size >> b;
@@ -23,7 +22,7 @@ VisionTrunk<T>::VisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& 
     blocks_.emplace_back(parameters, "block" + std::to_string(b + 1), block, b > 0, threads);
   }
   for (Scratch& scratch : scratch_) {
-    scratch.input.reserve(pixels * std::max(nn::kStoredImageChannels<T>, shape.channels / 4));
+    scratch.input.reserve(pixels * std::max(nn::kImageChannels, shape.channels / 4));
     scratch.output.reserve(pixels / 4 * shape.channels);
     scratch.convolution.reserve(pixels * shape.channels);
   }
@@ -83,7 +82,8 @@ void VisionTrunk<T>::writeFeatures(const T* map, float* features) const {
 }
 
 template <class T>
-void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& features) {
+void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Normalisation normalisation,
+                             nn::Matrix& features) {
   for (int b = 0; b < kBlocks; ++b) {
     const bool fuses = blocks_[b].shape().goal_channels > 0;
     const int convolutions = convolutionCount(batch, b);
@@ -97,7 +97,7 @@ void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn
         blocks_[b].pool(thread, map, scratch.convolution.data(), fuses ? goals.row(map).data() : nullptr);
       }
     }
-    blocks_[b].finishForward(mapCount(batch, b));
+    blocks_[b].finishForward(mapCount(batch, b), normalisation);
   }
   for (int i = 0; i < batch.goalCount(); ++i) {
     blocks_.back().output(i, scratch_[0].output.data());

@@ -19,6 +19,8 @@ BatchNorm::BatchNorm(Parameters& parameters, const std::string& name, int channe
       bias_(parameters.addParameter(name + ".bias", {channels})),
       running_mean_(parameters.addBuffer(name + ".running_mean", {channels})),
       running_variance_(parameters.addBuffer(name + ".running_var", {channels})),
+      batch_mean_(Eigen::ArrayXd::Zero(channels)),
+      batch_inverse_deviation_(Eigen::ArrayXd::Zero(channels)),
       mean_(Eigen::ArrayXd::Zero(channels)),
       inverse_deviation_(Eigen::ArrayXd::Zero(channels)),
       scale_(Eigen::ArrayXf::Zero(channels)),
@@ -40,7 +42,7 @@ void BatchNorm::reserve(int images) {
   backward_sums_.setZero(images, 2 * channels_);
 }
 
-void BatchNorm::finishForward(int images, int positions) {
+void BatchNorm::finishForward(int images, int positions, Normalisation normalisation) {
   const double count = double(images) * positions;
   const float* weight = parameters_.values().data() + weight_;
   const float* bias = parameters_.values().data() + bias_;
@@ -56,13 +58,16 @@ void BatchNorm::finishForward(int images, int positions) {
     // Not std::max(0, ...), which would make a variance of a NaN.
     double variance = square_sum / count - mean * mean;
     if (variance < 0) variance = 0;
-    mean_[c] = mean;
-    inverse_deviation_[c] = 1.0 / std::sqrt(variance + kEpsilon);
-    scale_[c] = static_cast<float>(weight[c] * inverse_deviation_[c]);
-    shift_[c] = static_cast<float>(bias[c] - weight[c] * inverse_deviation_[c] * mean);
     const double unbiased = variance * count / std::max(count - 1, 1.0);
     running_mean[c] = static_cast<float>((1 - kMomentum) * running_mean[c] + kMomentum * mean);
     running_variance[c] = static_cast<float>((1 - kMomentum) * running_variance[c] + kMomentum * unbiased);
+    batch_mean_[c] = mean;
+    batch_inverse_deviation_[c] = 1.0 / std::sqrt(variance + kEpsilon);
+    const bool running = normalisation == Normalisation::kRunning;
+    mean_[c] = running ? running_mean[c] : mean;
+    inverse_deviation_[c] = running ? 1.0 / std::sqrt(running_variance[c] + kEpsilon) : batch_inverse_deviation_[c];
+    scale_[c] = static_cast<float>(weight[c] * inverse_deviation_[c]);
+    shift_[c] = static_cast<float>(bias[c] - weight[c] * inverse_deviation_[c] * mean_[c]);
   }
 }
 
@@ -87,15 +92,16 @@ NormGradient BatchNorm::finishBackward(int images, int positions) {
       sum += backward_sums_(i, c);
       product_sum += backward_sums_(i, channels_ + c);
     }
-    // With xhat = (z - mean) * r: dz = weight * r * (dx - mean(dx) - xhat * mean(dx * xhat)).
-    const double r = inverse_deviation_[c];
-    const double normal_sum = r * (product_sum - mean_[c] * sum);
-    const double slope = -weight[c] * r * r * normal_sum / count;
-    dweight[c] = static_cast<float>(normal_sum);
+    // With xhat = (z - mean) * r, of the batch, and r' of what it was normalised with:
+    // dz = weight * r' * (dx - mean(dx) - xhat * mean(dx * xhat)).
+    const double r = batch_inverse_deviation_[c];
+    const double gain = weight[c] * inverse_deviation_[c];
+    const double slope = -gain * r * r * (product_sum - batch_mean_[c] * sum) / count;
+    dweight[c] = static_cast<float>(inverse_deviation_[c] * (product_sum - mean_[c] * sum));
     dbias[c] = static_cast<float>(sum);
-    gradient_(c, 0) = static_cast<float>(weight[c] * r);
+    gradient_(c, 0) = static_cast<float>(gain);
     gradient_(c, 1) = static_cast<float>(slope);
-    gradient_(c, 2) = static_cast<float>(-weight[c] * r * sum / count - slope * mean_[c]);
+    gradient_(c, 2) = static_cast<float>(-gain * sum / count - slope * batch_mean_[c]);
   }
   return {gradient_.col(0).data(), gradient_.col(1).data(), gradient_.col(2).data()};
 }

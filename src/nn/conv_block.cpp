@@ -23,9 +23,9 @@ ConvBlock<T>::ConvBlock(Parameters& parameters, const std::string& name, const C
       bias_(parameters.addParameter(name + ".conv.bias", {shape.out_channels})),
       norm_(parameters, name + ".norm", shape.out_channels),
       goal_(shape.goal_channels, shape.out_channels),
-      convolution_({shape.stored_channels, shape.out_channels, shape.size, shape.size}, input_gradient, threads),
+      convolution_({shape.image_channels, shape.out_channels, shape.size, shape.size}, input_gradient, threads),
       border_bias_(std::size_t(threads) * kBorderCases * shape.out_channels),
-      staging_(std::size_t(shape.out_channels) * shape.stored_channels * kTaps) {}
+      staging_(std::size_t(shape.out_channels) * shape.image_channels * kTaps) {}
 
 template <class T>
 void ConvBlock<T>::initialise(core::Random& random) {
@@ -47,9 +47,8 @@ void ConvBlock<T>::loadWeights() {
   const int used = shape_.image_channels * kTaps;
   for (int o = 0; o < shape_.out_channels; ++o) {
     const float* from = weights + std::size_t(o) * in_channels_ * kTaps;
-    float* to = &staging_[std::size_t(o) * shape_.stored_channels * kTaps];
+    float* to = &staging_[std::size_t(o) * used];
     for (int i = 0; i < used; ++i) to[i] = shape_.input_scale * from[i];
-    std::fill(to + used, to + shape_.stored_channels * kTaps, 0.f);
   }
   convolution_.setWeights(staging_.data());
 }
@@ -76,8 +75,8 @@ void ConvBlock<T>::pool(int thread, int image, const T* y, const float* goal) {
 }
 
 template <class T>
-void ConvBlock<T>::finishForward(int images) {
-  norm_.finishForward(images, mapShape().pooledPositions());
+void ConvBlock<T>::finishForward(int images, Normalisation normalisation) {
+  norm_.finishForward(images, mapShape().pooledPositions(), normalisation);
 }
 
 template <class T>
@@ -132,10 +131,11 @@ void ConvBlock<T>::writeWeightsGradient(int shares, int threads) {
   }
   convolution_.weightsGradient(share_gradients_.data(), staging_.data());
   float* gradients = parameters_.gradients().data() + weight_;
+  const int used = shape_.image_channels * kTaps;
   for (int o = 0; o < shape_.out_channels; ++o) {
-    const float* from = &staging_[std::size_t(o) * shape_.stored_channels * kTaps];
+    const float* from = &staging_[std::size_t(o) * used];
     float* to = gradients + std::size_t(o) * in_channels_ * kTaps;
-    for (int i = 0; i < shape_.image_channels * kTaps; ++i) to[i] = shape_.input_scale * from[i];
+    for (int i = 0; i < used; ++i) to[i] = shape_.input_scale * from[i];
   }
 }
 

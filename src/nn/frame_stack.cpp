@@ -23,12 +23,10 @@ void store(int difference, bfloat16& number) {
 
 template <class T, int kCopied>
 inline void interleavePixel(const T (&rows)[kStackedFrames][3 * kRun + 1], int p, T* x) {
-  constexpr int kStored = kStoredImageChannels<T>;
-  T* pixel = x + p * kStored;
+  T* pixel = x + p * kImageChannels;
   for (int f = 0; f < kStackedFrames; ++f) {
     std::memcpy(static_cast<void*>(pixel + 3 * f), rows[f] + 3 * p, kCopied * sizeof(T));
   }
-  std::memset(static_cast<void*>(pixel + kImageChannels), 0, (kStored - kImageChannels) * sizeof(T));
 }
 
 /// Lays `count` pixels of three frames, (count, 3) each, side by side. Four numbers are copied at a time, one register;
@@ -52,7 +50,7 @@ void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T
     for (int f = 1; f < kStackedFrames; ++f) {
       for (int i = 0; i < 3 * count; ++i) store(bytes[f - 1][i] - bytes[f][i], rows[f][i]);
     }
-    interleave(rows, count, x + std::size_t(start) * kStoredImageChannels<T>);
+    interleave(rows, count, x + std::size_t(start) * kImageChannels);
   }
 }
 

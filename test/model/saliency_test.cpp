@@ -24,6 +24,7 @@ class OnePixelPolicy : public GoalPolicy {
       probabilities(i, 1) = 1 - probabilities(i, 0);
     }
   }
+  void setNormalisation(nn::Normalisation) override {}
   double lossAndGradients(const std::vector<Sample>&, std::uint64_t) override { return 0; }
 
  private:

@@ -14,20 +14,19 @@ using Types = testing::Types<float, bfloat16>;
 TYPED_TEST_SUITE(FrameStack, Types);
 
 TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
-  constexpr int kStored = kStoredImageChannels<TypeParam>;
   for (int pixels : {1, 127, 128, 129, 1024}) {
     std::vector<std::vector<std::uint8_t>> frames(kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
     for (int f = 0; f < kStackedFrames; ++f) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
     const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
-    std::vector<TypeParam> x(pixels * kStored + 1, fromFloat<TypeParam>(-200.f));
+    std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
     stackFrames(with_black, pixels, x.data());
     for (int p = 0; p < pixels; ++p) {
-      for (int c = 0; c < kStored; ++c) {
+      for (int c = 0; c < kImageChannels; ++c) {
         const int newest = frames[0][3 * p + c % 3], oldest = frames[2][3 * p + c % 3];
         const int expected[] = {newest - kMiddleByte, newest, -oldest};
-        ASSERT_EQ(toFloat(x[p * kStored + c]), c < kImageChannels ? static_cast<float>(expected[c / 3]) : 0.f)
+        ASSERT_EQ(toFloat(x[p * kImageChannels + c]), static_cast<float>(expected[c / 3]))
             << "pixel " << p << " of " << pixels << ", channel " << c;
       }
     }

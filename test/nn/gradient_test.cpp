@@ -51,6 +51,7 @@ struct ConvBlockCheck : LayerCheck {
 
   std::vector<Checked> tensors() override {
     FastConvBlock<float> fast(naive, true, 2);
+    fast.normalisation = normalisation;
     fast.forward();
     fast.backward(factors);
     return {{"conv.weight", &naive.weight, fast.gradient("block.conv.weight")},
@@ -64,6 +65,23 @@ struct ConvBlockCheck : LayerCheck {
   core::Random random;
   NaiveConvBlock naive;
   Numbers factors;
+  Normalisation normalisation = Normalisation::kBatch;
+};
+
+/// What the running statistics differ by from the batch's is a constant.
+struct RenormalisedCheck : ConvBlockCheck {
+  RenormalisedCheck(const ConvBlockShape& shape, int images) : ConvBlockCheck(shape, images) {
+    normalisation = Normalisation::kRunning;
+    FastConvBlock<float> fast(naive, true, 2);
+    fast.normalisation = normalisation;
+    fast.forward();
+    naive.forward();
+    const Numbers mean = fast.buffer("block.norm.running_mean"), variance = fast.buffer("block.norm.running_var");
+    for (int c = 0; c < shape.out_channels; ++c) {
+      naive.ratio.push_back(std::sqrt((naive.variance[c] + 1e-5) / (variance[c] + 1e-5)));
+      naive.distance.push_back((naive.mean[c] - mean[c]) / std::sqrt(variance[c] + 1e-5));
+    }
+  }
 };
 
 struct LinearCheck : LayerCheck {
@@ -171,13 +189,16 @@ struct Case {
   std::function<std::unique_ptr<LayerCheck>()> make;
 };
 
-ConvBlockShape blockShape(int image_channels, int stored_channels, int goal_channels, int out_channels, int size,
-                          float input_scale = 1.f) {
-  return {image_channels, stored_channels, goal_channels, out_channels, size, input_scale};
+ConvBlockShape blockShape(int image_channels, int goal_channels, int out_channels, int size, float input_scale = 1.f) {
+  return {image_channels, goal_channels, out_channels, size, input_scale};
 }
 
 std::function<std::unique_ptr<LayerCheck>()> convBlock(const ConvBlockShape& shape, int images) {
   return [=] { return std::make_unique<ConvBlockCheck>(shape, images); };
+}
+
+std::function<std::unique_ptr<LayerCheck>()> renormalised(const ConvBlockShape& shape, int images) {
+  return [=] { return std::make_unique<RenormalisedCheck>(shape, images); };
 }
 
 class Gradients : public testing::TestWithParam<Case> {};
@@ -211,12 +232,13 @@ INSTANTIATE_TEST_SUITE_P(Layers, Gradients,
                          testing::Values(Case{"Linear", [] { return std::make_unique<LinearCheck>(); }},
                                          Case{"Dropout", [] { return std::make_unique<DropoutCheck>(); }},
                                          Case{"CrossEntropy", [] { return std::make_unique<CrossEntropyCheck>(); }},
-                                         Case{"ConvBlock", convBlock(blockShape(16, 16, 0, 16, 6), 3)},
-                                         Case{"ConvBlockWithGoal", convBlock(blockShape(16, 16, 4, 16, 6), 3)},
-                                         Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 16, 4, 16, 2), 5)},
-                                         Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 16, 3, 32, 4), 1)},
-                                         Case{"FirstConvBlock", convBlock(blockShape(9, 9, 0, 16, 4, 0.25f), 2)},
-                                         Case{"FirstConvBlockPadded", convBlock(blockShape(9, 16, 4, 16, 4), 2)}),
+                                         Case{"ConvBlock", convBlock(blockShape(16, 0, 16, 6), 3)},
+                                         Case{"ConvBlockWithGoal", convBlock(blockShape(16, 4, 16, 6), 3)},
+                                         Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 4, 16, 2), 5)},
+                                         Case{"RenormalisedConvBlock", renormalised(blockShape(16, 4, 16, 6), 3)},
+                                         Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 3, 32, 4), 1)},
+                                         Case{"FirstConvBlock", convBlock(blockShape(9, 0, 16, 4, 0.25f), 2)},
+                                         Case{"FirstConvBlockWithGoal", convBlock(blockShape(9, 4, 16, 4), 2)}),
                          [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 }  // namespace

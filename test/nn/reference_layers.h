@@ -58,9 +58,10 @@ struct NaiveConvBlock {
   ConvBlockShape shape;
   int images;
   Numbers weight, bias, scale, shift;  // conv.weight, conv.bias, norm.weight, norm.bias
-  Numbers x;                           // (images, size, size, stored)
+  Numbers x;                           // (images, size, size, image)
   Numbers goals;                       // (images, goal)
   Numbers mean, variance;              // of the batch, after forward()
+  Numbers ratio, distance;             // constants of batch renormalisation; empty: 1 and 0
 
   NaiveConvBlock(const ConvBlockShape& block_shape, int batch, core::Random& random)
       : shape(block_shape), images(batch) {
@@ -69,7 +70,7 @@ struct NaiveConvBlock {
     bias = randomNumbers(shape.out_channels, random, -1.0, 0.3);  // ReLU must have something to do
     scale = randomNumbers(shape.out_channels, random, 0.5, 1.5);
     shift = randomNumbers(shape.out_channels, random);
-    x = randomNumbers(std::size_t(images) * shape.size * shape.size * shape.stored_channels, random,
+    x = randomNumbers(std::size_t(images) * shape.size * shape.size * shape.image_channels, random,
                       -1 / shape.input_scale, 1 / shape.input_scale);
     goals = randomNumbers(std::size_t(images) * shape.goal_channels, random);
   }
@@ -83,7 +84,7 @@ struct NaiveConvBlock {
       for (int p = 0; p < pixels; ++p) {
         for (int i = 0; i < in; ++i) {
           concatenated[p * in + i] = i < shape.image_channels
-                                         ? shape.input_scale * x[(image * pixels + p) * shape.stored_channels + i]
+                                         ? shape.input_scale * x[(image * pixels + p) * shape.image_channels + i]
                                          : goals[image * shape.goal_channels + i - shape.image_channels];
         }
       }
@@ -97,7 +98,9 @@ struct NaiveConvBlock {
   Numbers normalised(Numbers z, const Numbers& means, const Numbers& variances) const {
     for (std::size_t i = 0; i < z.size(); ++i) {
       const int c = static_cast<int>(i % shape.out_channels);
-      z[i] = scale[c] * (z[i] - means[c]) / std::sqrt(variances[c] + 1e-5) + shift[c];
+      z[i] = (z[i] - means[c]) / std::sqrt(variances[c] + 1e-5);
+      if (!ratio.empty()) z[i] = ratio[c] * z[i] + distance[c];
+      z[i] = scale[c] * z[i] + shift[c];
     }
     return z;
   }
@@ -167,7 +170,7 @@ struct FastConvBlock {
       block.convolve(thread, x.data() + i * inputSize(), scratchOf(thread));
       block.pool(thread, i, scratchOf(thread), goal(i));
     }
-    block.finishForward(images);
+    block.finishForward(images, normalisation);
     Numbers all;
     AlignedBuffer<T> out(block.outputSize());
     for (int i = 0; i < images; ++i) {
@@ -203,7 +206,7 @@ struct FastConvBlock {
     Numbers all;
     AlignedBuffer<T> out(block.outputSize());
     const ConvBlockShape& shape = block.shape();
-    const MapShape map{shape.size, shape.size, shape.stored_channels, block.predictionLayout()};
+    const MapShape map{shape.size, shape.size, shape.image_channels, block.predictionLayout()};
     for (int i = 0; i < images; ++i) {
       const AlignedBuffer<T> in = inLayout(x.data() + i * inputSize(), map);
       if (all_threads) {
@@ -217,9 +220,17 @@ struct FastConvBlock {
   }
 
   Numbers gradient(const std::string& name) const {
-    for (const TensorSlice& slice : parameters.parameterSlices()) {
+    return tensor(name, parameters.parameterSlices(), parameters.gradients());
+  }
+  Numbers buffer(const std::string& name) const {
+    return tensor(name, parameters.bufferSlices(), parameters.buffers());
+  }
+
+  static Numbers tensor(const std::string& name, const std::vector<TensorSlice>& slices,
+                        const Eigen::VectorXf& numbers) {
+    for (const TensorSlice& slice : slices) {
       if (slice.name != name) continue;
-      const float* from = parameters.gradients().data() + slice.offset;
+      const float* from = numbers.data() + slice.offset;
       return Numbers(from, from + slice.size);
     }
     return {};
@@ -227,6 +238,7 @@ struct FastConvBlock {
 
   int images;
   int threads;
+  Normalisation normalisation = Normalisation::kBatch;
   Parameters parameters;
   ConvBlock<T> block;
   AlignedBuffer<T> x, scratch, dx;

@@ -31,6 +31,7 @@ struct TrainingOptions {
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
   std::string exploration = "sample";  ///< how rollouts choose: one of model::actionChoiceNames()
   double weight_decay = 0;             ///< decoupled, a step
+  int renormalise_from = 0;            ///< training step from which batch norm takes running statistics; 0: none
   double averaging = 0;                ///< of the weights over steps: the share of the old mean, 0 for none
 
   core::OptionSet options();

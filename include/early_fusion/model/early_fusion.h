@@ -26,6 +26,7 @@ class EarlyFusion : public GoalPolicy {
   nn::Parameters& parameters() override { return parameters_; }
   const nn::Parameters& parameters() const override { return parameters_; }
   void parametersChanged() override;
+  void setNormalisation(nn::Normalisation normalisation) override { normalisation_ = normalisation; }
   void predict(const std::vector<Observation>& observations, Probabilities& probabilities) override;
   double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) override;
 
@@ -47,6 +48,7 @@ class EarlyFusion : public GoalPolicy {
   nn::Linear hidden_;
   nn::Linear output_;
   nn::Dropout dropout_;
+  nn::Normalisation normalisation_ = nn::Normalisation::kBatch;
   bool weights_stale_ = true;
   bool statistics_stale_ = true;
 

@@ -10,6 +10,7 @@
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/options.h"
 #include "early_fusion/core/vocabulary.h"
+#include "early_fusion/nn/batch_norm.h"
 #include "early_fusion/nn/parameters.h"
 #include "early_fusion/nn/weights_file.h"
 
@@ -67,7 +68,10 @@ class GoalPolicy {
   /// Inference with running statistics and no dropout. @param probabilities (observations, 7), rows sum to 1.
   virtual void predict(const std::vector<Observation>& observations, Probabilities& probabilities) = 0;
 
-  /// Forward with batch statistics and dropout, then backward: fills parameters().gradients() with the gradient of the
+  /// Which statistics lossAndGradients() normalises with: the batch's until this is called.
+  virtual void setNormalisation(nn::Normalisation normalisation) = 0;
+
+  /// Forward with dropout, then backward: fills parameters().gradients() with the gradient of the
   /// weighted mean cross-entropy, and updates the running statistics. Neighbouring samples with the same frames share
   /// the work that their goals have no part in, and count as one image in the batch statistics up to there.
   /// @param dropout_seed decides the dropout mask. @return the loss.

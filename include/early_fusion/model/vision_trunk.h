@@ -54,7 +54,7 @@ class VisionTrunk {
   int featureCount() const;
 
   /// Training: batch, goals (goalCount(), goal_channels) -> features (goalCount(), featureCount()), C,H,W within a row.
-  void forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& features);
+  void forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Normalisation normalisation, nn::Matrix& features);
 
   /// Backward of the last forward(): the same batch and goals, dfeatures -> the gradients of all parameters of the
   /// blocks, and dgoals.

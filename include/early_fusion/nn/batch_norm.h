@@ -8,6 +8,12 @@
 
 namespace early_fusion::nn {
 
+/// Which statistics training normalises with. Inference always takes the running ones.
+enum class Normalisation {
+  kBatch,    ///< the batch's
+  kRunning,  ///< the running ones, moved by this batch: batch renormalisation (Ioffe 2017), without its bounds
+};
+
 /// Batch normalisation over (images, H, W), per channel, as PyTorch's BatchNorm2d (eps 1e-5, momentum 0.1, the running
 /// variance unbiased). It turns sums into per-channel scales and shifts; pooling.h applies them.
 ///
@@ -24,8 +30,9 @@ class BatchNorm {
   /// (2,C): sum and sum of squares of z over an image, to be written before finishForward().
   double* forwardSums(int image) { return forward_sums_.row(image).data(); }
 
-  /// Batch statistics of images * positions values a channel; moves the running ones.
-  void finishForward(int images, int positions);
+  /// Statistics of images * positions values a channel; moves the running ones. scale() and shift() are then those of
+  /// `normalisation`.
+  void finishForward(int images, int positions, Normalisation normalisation);
   const float* scale() const { return scale_.data(); }
   const float* shift() const { return shift_.data(); }
 
@@ -37,7 +44,9 @@ class BatchNorm {
   /// (2,C): sum of dx and of dx * z over an image, to be written before finishBackward().
   double* backwardSums(int image) { return backward_sums_.row(image).data(); }
 
-  /// Writes the gradients of weight and bias; returns what makes dz of dx, valid until the next call.
+  /// Writes the gradients of weight and bias; returns what makes dz of dx, valid until the next call. Where running
+  /// statistics normalise, their ratio and distance to the batch's count as constants, so that neither a change of all
+  /// z alike nor of their spread is asked for, as with the batch's.
   NormGradient finishBackward(int images, int positions);
 
  private:
@@ -46,8 +55,9 @@ class BatchNorm {
   Parameters& parameters_;
   int channels_;
   std::size_t weight_, bias_, running_mean_, running_variance_;
-  Sums forward_sums_, backward_sums_;  // (images, 2 * C)
-  Eigen::ArrayXd mean_, inverse_deviation_;
+  Sums forward_sums_, backward_sums_;                    // (images, 2 * C)
+  Eigen::ArrayXd batch_mean_, batch_inverse_deviation_;  // of the last batch
+  Eigen::ArrayXd mean_, inverse_deviation_;              // that it was normalised with
   Eigen::ArrayXf scale_, shift_, inference_scale_, inference_shift_;
   Eigen::ArrayXXf gradient_;  // (C, 3)
 };

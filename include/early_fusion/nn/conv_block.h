@@ -14,8 +14,7 @@
 namespace early_fusion::nn {
 
 struct ConvBlockShape {
-  int image_channels;       ///< of the weights, without the goal's
-  int stored_channels;      ///< of the maps given to it, >= image_channels; what lies beyond is ignored
+  int image_channels;       ///< of the maps given to it
   int goal_channels;        ///< 0 where no goal joins
   int out_channels;         ///< a multiple of kLanes
   int size;                 ///< edge of the input map [px], even
@@ -65,11 +64,11 @@ class ConvBlock {
   /// Room for the maps that a training step of so many images keeps.
   void reserve(int images);
 
-  /// x (size,size,stored) -> y (size,size,out), of which pool() makes an image's map with its goal (goal_channels) or
+  /// x (size,size,image) -> y (size,size,out), of which pool() makes an image's map with its goal (goal_channels) or
   /// nullptr.
   void convolve(int thread, const T* x, T* y) { convolution_.forward(thread, x, y); }
   void pool(int thread, int image, const T* y, const float* goal);
-  void finishForward(int images);
+  void finishForward(int images, Normalisation normalisation);
   /// Training's output of an image, (size/2,size/2,out), after finishForward().
   void output(int image, T* out) const;
 
@@ -81,7 +80,7 @@ class ConvBlock {
   /// The gradient dy (size,size,out) of what convolve() gave: that of one image, or added to those of others.
   void unpool(int image, bool add, T* dy);
   /// The convolutions of a share must come in order, from one thread.
-  /// x as in convolve(); dx (size,size,stored) or nullptr.
+  /// x as in convolve(); dx (size,size,image) or nullptr.
   void backward(int thread, int share, bool first_of_share, const T* x, const T* dy, T* dx);
   /// Writes the gradients of all parameters, and dgoals (images, goal_channels) when there is a goal.
   /// @param shares of the convolutions.
@@ -89,7 +88,7 @@ class ConvBlock {
 
   /// How predict() wants its input.
   MapLayout predictionLayout() const { return convolution_.predictionLayout(); }
-  /// Inference with running statistics: x (size,size,stored) in predictionLayout(), goal as in pool(), y for what comes
+  /// Inference with running statistics: x (size,size,image) in predictionLayout(), goal as in pool(), y for what comes
   /// in between -> out (size/2,size/2,out) in `out_layout`.
   void predict(int thread, const T* x, const float* goal, T* y, MapLayout out_layout, T* out);
   /// The same bits with all threads on one image.
@@ -112,7 +111,7 @@ class ConvBlock {
   AlignedBuffer<std::uint8_t> choices_;   // likewise
   AlignedBuffer<T> output_gradients_;     // likewise
   AlignedBuffer<float> border_bias_;      // (threads, 9, out)
-  AlignedBuffer<float> staging_;          // (out, stored, 3, 3)
+  AlignedBuffer<float> staging_;          // (out, image, 3, 3)
   AlignedBuffer<float> share_gradients_;  // (shares, weights in the convolution's layout)
   AlignedBuffer<float> image_gradients_;  // (threads, likewise)
 };

@@ -6,15 +6,10 @@
 
 namespace early_fusion::nn {
 
-/// Channels of the first layer's input as it is stored: three frames of RGB, and for bfloat16 zeros up to a full
-/// register, with which its convolutions are faster. What is stored are differences of bytes, which either type holds
-/// exactly.
+/// Channels of the first layer's input: three frames of RGB. They are differences of bytes, which floats and bfloat16
+/// hold exactly.
 inline constexpr int kStackedFrames = 3;
 inline constexpr int kImageChannels = 3 * kStackedFrames;
-template <class T>
-inline constexpr int kStoredImageChannels = kImageChannels;
-template <>
-inline constexpr int kStoredImageChannels<bfloat16> = 16;
 
 /// Of the newest frame the network sees (byte - kMiddleByte) * kByteScale, in [-2, 2), of each older one how the next
 /// differs from it, (next byte - byte) * kByteScale. About 0, because of inputs that are all positive about half of the
@@ -23,7 +18,7 @@ inline constexpr int kStoredImageChannels<bfloat16> = 16;
 inline constexpr int kMiddleByte = 128;
 inline constexpr float kByteScale = 1.f / 64.f;
 
-/// Lays three RGB8 frames (pixels, 3), the newest first, side by side: x (pixels, kStoredImageChannels<T>), as the
+/// Lays three RGB8 frames (pixels, 3), the newest first, side by side: x (pixels, kImageChannels), as the
 /// network sees them but for kByteScale; the newest frame's red, green and blue first. nullptr is a black frame.
 template <class T>
 void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x);
