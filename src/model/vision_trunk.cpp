@@ -162,9 +162,20 @@ void VisionTrunk<T>::predict(int thread, const Frames& frames, const float* goal
 }
 
 template <class T>
+void VisionTrunk<T>::stackOnAllThreads(const Frames& frames, T* x) {
+#pragma omp parallel for schedule(static) num_threads(threads_)
+  for (int part = 0; part < threads_; ++part) {
+    const std::size_t first = pixels() * part / threads_, end = pixels() * (part + 1) / threads_;
+    Frames from = frames;
+    for (const std::uint8_t*& frame : from) frame = frame == nullptr ? nullptr : frame + 3 * first;
+    nn::stackFrames(from.data(), static_cast<int>(end - first), x + nn::kImageChannels * first);
+  }
+}
+
+template <class T>
 void VisionTrunk<T>::predictOnAllThreads(const Frames& frames, const float* goal, float* features) {
   Scratch& scratch = scratch_[0];
-  nn::stackFrames(frames.data(), pixels(), scratch.input.data());
+  stackOnAllThreads(frames, scratch.input.data());
   T* in = scratch.input.data();
   T* out = scratch.output.data();
   for (int b = 0; b < kBlocks; ++b) {

@@ -93,6 +93,7 @@ TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
   for (const double averaging : {0.0, 0.9}) {
     TrainingOptions options = tinyTraining();
     options.averaging = averaging;
+    options.renormalise_from = 12;
     const auto whole = makeTrainer(options);
     runRound(*whole);
     runRound(*whole);
@@ -104,6 +105,19 @@ TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
     EXPECT_EQ(whole->policy().parameters().values(), resumed->policy().parameters().values());
     EXPECT_EQ(whole->policy().parameters().buffers(), resumed->policy().parameters().buffers());
   }
+}
+
+TEST(Trainer, NormalisesWithRunningStatisticsFromTheSetStepOn) {
+  TrainingOptions options = tinyTraining();
+  const auto never = makeTrainer(options);
+  int steps = 0;
+  while (!never->roundDue()) never->add(syntheticTrajectory(never->trajectoriesSeen()));
+  never->trainRound([&](double) { ++steps; });
+  options.renormalise_from = steps;
+  const auto then = makeTrainer(options);
+  runRound(*then);
+  EXPECT_EQ(never->policy().parameters().values(), then->policy().parameters().values());
+  EXPECT_NE(runRound(*never).loss, runRound(*then).loss);
 }
 
 TEST(Trainer, ActsWithTheRunningMeanOfTheWeights) {

@@ -245,6 +245,28 @@ TEST(GoalPolicy, PredictsWithTheStatisticsOfTheLastTraining) {
   EXPECT_NE(before, after);
 }
 
+TEST_P(EveryPrecision, WithRunningStatisticsTheLossIsThatOfWhatItPredicts) {
+  PolicyOptions options = smallOptions(GetParam());
+  options.dropout = 0;
+  const auto policy = makeSmall(options);
+  const TestBatch batch(8, 32, kItems, 3);
+  const double with_batch_statistics = policy->lossAndGradients(batch.samples, 0);
+  policy->setNormalisation(nn::Normalisation::kRunning);
+  const double loss = policy->lossAndGradients(batch.samples, 0);
+  Probabilities probabilities;
+  policy->predict(batch.observations(), probabilities);
+  double expected = 0, weights = 0;
+  for (std::size_t i = 0; i < batch.samples.size(); ++i) {
+    const Sample& sample = batch.samples[i];
+    for (int a = 0; a < core::kActionCount; ++a) {
+      expected -= sample.weight * sample.target[a] * std::log(probabilities(static_cast<Eigen::Index>(i), a));
+    }
+    weights += sample.weight;
+  }
+  EXPECT_NEAR(loss, expected / weights, GetParam() == "f32" ? 1e-5 : 5e-3);
+  EXPECT_GT(std::abs(loss - with_batch_statistics), 1e-2);
+}
+
 TEST(GoalPolicy, CountsItemsAndIgnoresTheirOrder) {
   const auto policy = makeSmall(smallOptions());
   const TestBatch batch(1, 32, kItems, 3);

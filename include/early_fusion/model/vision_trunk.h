@@ -84,6 +84,7 @@ class VisionTrunk {
   void backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
   /// How what comes before a block must be laid out for predict(); `block` may be the one after the last.
   nn::MapLayout predictionLayout(int block) const;
+  void stackOnAllThreads(const Frames& frames, T* x);
   void writeFeatures(const T* map, float* features) const;
 
   VisionTrunkShape shape_;
