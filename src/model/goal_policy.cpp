@@ -33,7 +33,7 @@ void validate(const PolicyOptions& options, const core::Vocabulary& vocabulary) 
 }
 
 bool usesBfloat16(const std::string& precision) {
-  return precision == "bf16" || (precision == "auto" && nn::processorPrefersBfloat16());
+  return precision == "bf16" || (precision == "auto" && nn::processorHasBfloat16());
 }
 
 std::string join(const std::vector<std::int64_t>& shape) {
@@ -127,7 +127,7 @@ core::OptionSet PolicyOptions::options() {
   set.add("image_size", image_size, 16, 1024, "px",
           "Edge of the square frames that the policy sees; a multiple of 16.");
   set.addChoice("precision", precision, {"auto", "f32", "bf16"},
-                "What convolutions compute in; auto is bf16 where the processor is faster in it (AMX), else f32.");
+                "What convolutions compute in; auto is bf16 where the processor has it natively.");
   return set;
 }
 

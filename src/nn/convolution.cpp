@@ -78,11 +78,6 @@ bool suitsWinograd(const ConvolutionShape& shape) {
          shape.in_channels % kLanes == 0 && shape.out_channels % kLanes == 0;
 }
 
-bool processorHas(dnnl::cpu_isa isa) {
-  const int wanted = static_cast<int>(isa);
-  return (static_cast<int>(dnnl::get_effective_cpu_isa()) & wanted) == wanted;
-}
-
 dnnl::memory unbound(const dnnl::memory::desc& description) { return {description, cpu(), DNNL_MEMORY_NONE}; }
 
 void reorder(dnnl::memory from, dnnl::memory to) {
@@ -93,8 +88,10 @@ void reorder(dnnl::memory from, dnnl::memory to) {
 
 }  // namespace
 
-bool processorHasBfloat16() { return processorHas(dnnl::cpu_isa::avx512_core_bf16); }
-bool processorPrefersBfloat16() { return processorHas(dnnl::cpu_isa::avx512_core_amx); }
+bool processorHasBfloat16() {
+  const int wanted = static_cast<int>(dnnl::cpu_isa::avx512_core_bf16);
+  return (static_cast<int>(dnnl::get_effective_cpu_isa()) & wanted) == wanted;
+}
 
 template <class T>
 class Convolution<T>::Implementation {

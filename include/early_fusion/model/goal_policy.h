@@ -40,7 +40,7 @@ struct PolicyOptions {
   int fusion_block = 1;  ///< the goal joins the output of this block, [0, 3]; 0: the image itself
   double dropout = 0.5;  ///< after the hidden layer, [0, 0.95]
   int image_size = 128;  ///< [px], a multiple of 16
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor is faster in it
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes in it natively
 
   core::OptionSet options();
 };

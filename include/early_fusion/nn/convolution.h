@@ -17,10 +17,6 @@ struct ConvolutionShape {
 /// True where the processor computes in bfloat16 natively (avx512_bf16).
 bool processorHasBfloat16();
 
-/// True where bfloat16 is also faster than float: with matrix registers (AMX). Without them the library's kernels took
-/// 1.6 times as long as in float.
-bool processorPrefersBfloat16();
-
 /// A 3x3 convolution with stride 1, one pixel of zero padding and no bias, of one image a call: maps are (H,W,C), but
 /// for predictionLayout().
 ///

@@ -16,7 +16,7 @@ namespace early_fusion::nodes {
 struct Acting {
   std::string mode = "argmax";     ///< one of model::actionChoiceNames()
   std::uint64_t seed = 0;          ///< of the draws in the modes that draw
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor is faster in it
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor has it natively
 };
 
 /// What was decided about one image.
