@@ -18,7 +18,7 @@ std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uin
 }  // namespace
 
 const std::vector<std::string>& actionChoiceNames() {
-  static const std::vector<std::string> names{"argmax", "sample", "persistent"};
+  static const std::vector<std::string> names{"argmax", "sample", "persistent", "mixed"};
   return names;
 }
 
@@ -30,8 +30,9 @@ core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::k
                           ActionChoice choice, std::uint64_t seed, std::uint64_t episode, std::uint32_t step) {
   Eigen::Index likeliest;
   probabilities.maxCoeff(&likeliest);
-  if (choice == ActionChoice::kArgmax) return core::kAllActions[likeliest];
-  const std::uint32_t drawn_at = choice == ActionChoice::kPersistent ? persistentDraw(seed, episode, step) : step;
+  const bool draws = choice == ActionChoice::kMixed ? episode % 2 == 1 : choice != ActionChoice::kArgmax;
+  if (!draws) return core::kAllActions[likeliest];
+  const std::uint32_t drawn_at = choice == ActionChoice::kSample ? step : persistentDraw(seed, episode, step);
   core::Random random(seed, {core::kSamplingStream, episode, drawn_at});
   double left = random.uniform() * probabilities.cast<double>().sum();
   for (int action = 0; action < core::kActionCount; ++action) {

@@ -51,6 +51,16 @@ TEST(ActionChoice, PersistentDrawsDoTooButKeepToOneActionForAWhile) {
   EXPECT_LT(changes, 480);  // 4800 / 16 new numbers and 100 episodes, most of which change the action
 }
 
+TEST(ActionChoice, MixedIsArgmaxInEvenEpisodesAndPersistentInOddOnes) {
+  for (std::uint64_t episode = 0; episode < 40; ++episode) {
+    const ActionChoice same = episode % 2 == 0 ? ActionChoice::kArgmax : ActionChoice::kPersistent;
+    for (std::uint32_t step = 0; step < 48; ++step) {
+      EXPECT_EQ(chooseAction(someProbabilities(), ActionChoice::kMixed, 7, episode, step),
+                chooseAction(someProbabilities(), same, 7, episode, step));
+    }
+  }
+}
+
 TEST(ActionChoice, ADrawIsDecidedBySeedEpisodeAndStep) {
   int differences = 0;
   for (std::uint32_t step = 0; step < 100; ++step) {
@@ -69,7 +79,8 @@ TEST(ActionChoice, NamesItsWays) {
   EXPECT_EQ(actionChoiceFromName("argmax"), ActionChoice::kArgmax);
   EXPECT_EQ(actionChoiceFromName("sample"), ActionChoice::kSample);
   EXPECT_EQ(actionChoiceFromName("persistent"), ActionChoice::kPersistent);
-  EXPECT_EQ(actionChoiceNames().size(), 3u);
+  EXPECT_EQ(actionChoiceFromName("mixed"), ActionChoice::kMixed);
+  EXPECT_EQ(actionChoiceNames().size(), 4u);
   EXPECT_THROW(actionChoiceFromName("greedy"), core::Error);
 }
 
