@@ -74,8 +74,9 @@ core::Image drawEpisode(const sim::World& world, const std::vector<PlayedStep>& 
   sim::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const bool takes = steps[i].action == core::Action::kCollect || steps[i].action == core::Action::kRemove;
-    if (takes || i % kSpread == 0 || i + 1 == steps.size()) images.push_back(draw(rasterizer, world, steps[i], style));
+    const bool last = i + 1 == steps.size();
+    const bool takes = !last && steps[i + 1].state.present != steps[i].state.present;
+    if (takes || last || i % kSpread == 0) images.push_back(draw(rasterizer, world, steps[i], style));
   }
   return sheet(images);
 }
