@@ -66,7 +66,7 @@ int VisionTrunk<T>::firstMap(const ViewBatch& batch, int block, int convolution)
 template <class T>
 const T* VisionTrunk<T>::blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    nn::stackFrames(batch.views[convolution].data(), pixels(), scratch.input.data());
+    nn::stackFrames(batch.views[convolution].data(), 0, pixels(), scratch.input.data());
   } else {
     blocks_[block - 1].output(convolution, scratch.input.data());
   }
@@ -151,7 +151,7 @@ nn::MapLayout VisionTrunk<T>::predictionLayout(int block) const {
 template <class T>
 void VisionTrunk<T>::predict(int thread, const Frames& frames, const float* goal, float* features) {
   Scratch& scratch = scratch_[thread];
-  nn::stackFrames(frames.data(), pixels(), scratch.input.data());
+  nn::stackFrames(frames.data(), 0, pixels(), scratch.input.data());
   T* in = scratch.input.data();
   T* out = scratch.output.data();
   for (int b = 0; b < kBlocks; ++b) {
@@ -165,10 +165,7 @@ template <class T>
 void VisionTrunk<T>::stackOnAllThreads(const Frames& frames, T* x) {
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (int part = 0; part < threads_; ++part) {
-    const std::size_t first = pixels() * part / threads_, end = pixels() * (part + 1) / threads_;
-    Frames from = frames;
-    for (const std::uint8_t*& frame : from) frame = frame == nullptr ? nullptr : frame + 3 * first;
-    nn::stackFrames(from.data(), static_cast<int>(end - first), x + nn::kImageChannels * first);
+    nn::stackFrames(frames.data(), pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
   }
 }
 

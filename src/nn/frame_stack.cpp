@@ -40,10 +40,10 @@ void interleave(const T (&rows)[kStackedFrames][3 * kRun + 1], int count, T* x) 
 }  // namespace
 
 template <class T>
-void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x) {
+void stackFrames(const std::uint8_t* const frames[kStackedFrames], int first_pixel, int last_pixel, T* x) {
   T rows[kStackedFrames][3 * kRun + 1] = {};
-  for (int start = 0; start < pixels; start += kRun) {
-    const int count = std::min(kRun, pixels - start);
+  for (int start = first_pixel; start < last_pixel; start += kRun) {
+    const int count = std::min(kRun, last_pixel - start);
     const std::uint8_t* bytes[kStackedFrames];
     for (int f = 0; f < kStackedFrames; ++f) bytes[f] = frames[f] != nullptr ? frames[f] + 3 * start : kBlack;
     for (int i = 0; i < 3 * count; ++i) store(bytes[0][i] - kMiddleByte, rows[0][i]);
@@ -54,7 +54,7 @@ void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T
   }
 }
 
-template void stackFrames<float>(const std::uint8_t* const[kStackedFrames], int, float*);
-template void stackFrames<bfloat16>(const std::uint8_t* const[kStackedFrames], int, bfloat16*);
+template void stackFrames<float>(const std::uint8_t* const[kStackedFrames], int, int, float*);
+template void stackFrames<bfloat16>(const std::uint8_t* const[kStackedFrames], int, int, bfloat16*);
 
 }  // namespace early_fusion::nn

@@ -21,7 +21,7 @@ TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
     }
     const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
     std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
-    stackFrames(with_black, pixels, x.data());
+    stackFrames(with_black, 0, pixels, x.data());
     for (int p = 0; p < pixels; ++p) {
       for (int c = 0; c < kImageChannels; ++c) {
         const int newest = frames[0][3 * p + c % 3], oldest = frames[2][3 * p + c % 3];

@@ -193,12 +193,9 @@ ConvBlockShape blockShape(int image_channels, int goal_channels, int out_channel
   return {image_channels, goal_channels, out_channels, size, input_scale};
 }
 
+template <class Check = ConvBlockCheck>
 std::function<std::unique_ptr<LayerCheck>()> convBlock(const ConvBlockShape& shape, int images) {
-  return [=] { return std::make_unique<ConvBlockCheck>(shape, images); };
-}
-
-std::function<std::unique_ptr<LayerCheck>()> renormalised(const ConvBlockShape& shape, int images) {
-  return [=] { return std::make_unique<RenormalisedCheck>(shape, images); };
+  return [=] { return std::make_unique<Check>(shape, images); };
 }
 
 class Gradients : public testing::TestWithParam<Case> {};
@@ -235,7 +232,8 @@ INSTANTIATE_TEST_SUITE_P(Layers, Gradients,
                                          Case{"ConvBlock", convBlock(blockShape(16, 0, 16, 6), 3)},
                                          Case{"ConvBlockWithGoal", convBlock(blockShape(16, 4, 16, 6), 3)},
                                          Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 4, 16, 2), 5)},
-                                         Case{"RenormalisedConvBlock", renormalised(blockShape(16, 4, 16, 6), 3)},
+                                         Case{"RenormalisedConvBlock",
+                                              convBlock<RenormalisedCheck>(blockShape(16, 4, 16, 6), 3)},
                                          Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 3, 32, 4), 1)},
                                          Case{"FirstConvBlock", convBlock(blockShape(9, 0, 16, 4, 0.25f), 2)},
                                          Case{"FirstConvBlockWithGoal", convBlock(blockShape(9, 4, 16, 4), 2)}),

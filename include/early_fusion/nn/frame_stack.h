@@ -18,9 +18,10 @@ inline constexpr int kImageChannels = 3 * kStackedFrames;
 inline constexpr int kMiddleByte = 128;
 inline constexpr float kByteScale = 1.f / 64.f;
 
-/// Lays three RGB8 frames (pixels, 3), the newest first, side by side: x (pixels, kImageChannels), as the
-/// network sees them but for kByteScale; the newest frame's red, green and blue first. nullptr is a black frame.
+/// Lays three RGB8 frames (pixels, 3), the newest first, side by side: x (pixels, kImageChannels), as the network sees
+/// them but for kByteScale; the newest frame's red, green and blue first. nullptr is a black frame. Pixels before
+/// first_pixel and from last_pixel on are left alone, so that several threads can share an image.
 template <class T>
-void stackFrames(const std::uint8_t* const frames[kStackedFrames], int pixels, T* x);
+void stackFrames(const std::uint8_t* const frames[kStackedFrames], int first_pixel, int last_pixel, T* x);
 
 }  // namespace early_fusion::nn
