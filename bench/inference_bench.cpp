@@ -13,10 +13,7 @@ std::function<void()> ourPrediction(int channels, const std::string& precision, 
 }
 
 std::function<void()> torchPrediction(int channels, torch::MemoryFormat format, const model::TorchBatch& batch) {
-  auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
-  for (torch::Tensor& parameter : network->parameters()) {
-    if (parameter.dim() == 4) parameter.set_data(parameter.data().contiguous(format));
-  }
+  const auto network = torchNetwork(channels, format);
   network->eval();
   const torch::Tensor images = batch.images.contiguous(format);
   return [network, images, &batch] {

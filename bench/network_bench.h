@@ -101,6 +101,15 @@ inline model::PolicyOptions policyOptions(int channels, const std::string& preci
   return options;
 }
 
+/// With its convolutions' weights in the layout of the images.
+inline std::shared_ptr<model::TorchEarlyFusion> torchNetwork(int channels, torch::MemoryFormat format) {
+  auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
+  for (torch::Tensor& parameter : network->parameters()) {
+    if (parameter.dim() == 4) parameter.set_data(parameter.data().contiguous(format));
+  }
+  return network;
+}
+
 inline std::vector<int> channelsFromArguments(int argc, char** argv) {
   std::vector<int> channels;
   for (int i = 2; i < argc; ++i) channels.push_back(std::atoi(argv[i]));

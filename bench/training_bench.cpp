@@ -20,10 +20,7 @@ std::function<void()> ourStep(int channels, const std::string& precision, const 
 }
 
 std::function<void()> torchStep(int channels, torch::MemoryFormat format, const model::TorchBatch& batch) {
-  auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
-  for (torch::Tensor& parameter : network->parameters()) {
-    if (parameter.dim() == 4) parameter.set_data(parameter.data().contiguous(format));
-  }
+  const auto network = torchNetwork(channels, format);
   network->train();
   auto adam = std::make_shared<torch::optim::Adam>(network->parameters(), torch::optim::AdamOptions(1e-4));
   const torch::Tensor images = batch.images.contiguous(format);

@@ -4,7 +4,7 @@
 Example: early_fusion evaluate --policy models/simple.safetensors --task simple --trace trace.json
          scripts/analyse_trace.py trace.json
 Prints, in Markdown: what the policy does where the expert would do what; how many requested objects were collected, by
-type, by how far they were at the start, by whether something had to be removed; what was collected by mistake; and how the
+type, by how far they were at the start, by how much stood before them; what was collected by mistake; and how the
 episodes end in which something requested is left.
 """
 import argparse
@@ -63,6 +63,14 @@ def distance(steps):
     return f"{low} to {low + 9} steps"
 
 
+def exposure(steps, item):
+    """How much of the way to an item's best exposed instance was free at the start."""
+    best = max(entry["exposure"] for entry in steps[0]["scene"] if entry["item"] == item)
+    if best in (0, 1):
+        return "none" if best == 0 else "all"
+    return "under half" if best < 0.5 else "half or more"
+
+
 def collected_by(title, key, episodes):
     """key(steps, item) names the group that a requested item belongs to."""
     requested, collected = collections.Counter(), collections.Counter()
@@ -118,8 +126,7 @@ def main():
     collected_by("By type", lambda steps, item: item, episodes)
     collected_by("By the expert's way from the start to the nearest requested object",
                  lambda steps, item: distance(steps), episodes)
-    collected_by("By whether the expert would have removed something on the policy's way",
-                 lambda steps, item: "removal" if any(s["expert_action"] == "REMOVE" for s in steps) else "none", episodes)
+    collected_by("By the share of the orientations towards it at which nothing stood before it", exposure, episodes)
     mistakes(episodes)
     endings(episodes)
 

@@ -21,12 +21,14 @@ std::string traceLine(const sim::World& world, std::uint64_t episode, const sim:
   line["scene"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const sim::Instance& instance = instances[i];
+    const bool present = ((state.present >> i) & 1) != 0;
     line["scene"].push_back({{"instance", i},
                              {"item", vocabulary.name(instance.item)},
                              {"x", instance.x},
                              {"y", instance.y},
                              {"theta", instance.theta},
-                             {"present", ((state.present >> i) & 1) != 0}});
+                             {"present", present},
+                             {"exposure", present ? before.cone().exposure(static_cast<int>(i), state.present) : 0}});
   }
   line["in_cone"] = nlohmann::ordered_json::array();
   for (std::uint8_t instance : before.cone().at(state.orientation)) {

@@ -28,6 +28,8 @@ core::OptionSet TrainingOptions::options() {
   set.addChoice("teacher", teacher, teacherNames(),
                 "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
                 "not in view");
+  set.add("collect_margin", collect_margin, 0, 5, "steps",
+          "that the teacher goes on beyond where COLLECT would first succeed, so that a policy may miss it by as many");
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
   set.add("soft_labels", soft_labels, 0, 1, "",
@@ -152,7 +154,8 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
   // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
   observation.frames = {now, now, index.step % 2 == 1 ? now : before};
   for (std::size_t i = 0; i < lessonCount(step); ++i) {
-    if (step.lessons[i].label.steps == 2) add(step.lessons[i]);
+    const int steps = step.lessons[i].label.steps;
+    if (steps >= 2 && steps <= 2 + options_.collect_margin) add(step.lessons[i]);
   }
 }
 

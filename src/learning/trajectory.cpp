@@ -13,8 +13,8 @@ const std::vector<std::string>& teacherNames() {
   return names;
 }
 
-Teacher teacherFromName(const std::string& name) {
-  return static_cast<Teacher>(core::indexOf(name, teacherNames(), "teacher"));
+Teacher::Kind teacherFromName(const std::string& name) {
+  return static_cast<Teacher::Kind>(core::indexOf(name, teacherNames(), "teacher"));
 }
 
 double Trajectory::agreement() const {
@@ -25,7 +25,7 @@ double Trajectory::agreement() const {
 }
 
 TrajectoryRecorder::TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                                       std::shared_ptr<const sim::ConeTable> cone, Teacher teacher)
+                                       std::shared_ptr<const sim::ConeTable> cone, const Teacher& teacher)
     : seed_(seed), instances_(std::move(instances)), cone_(std::move(cone)), teacher_(teacher) {
   trajectory_.episode = episode;
 }
@@ -64,10 +64,12 @@ Trajectory TrajectoryRecorder::finish(const sim::Score& score) {
 }
 
 expert::Label TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Request& request) const {
-  if (teacher_ == Teacher::kGreedy) {
-    return expert::label(*cone_, instances_, state.present, state.orientation, request);
+  if (teacher_.kind == Teacher::Kind::kSearching) {
+    return expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request,
+                                  teacher_.margin);
   }
-  return expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
+  const sim::InstanceMask wanted = expert::wantedInstances(instances_, state.present, request);
+  return expert::labelFor(*cone_, wanted, state.present, state.orientation, teacher_.margin);
 }
 
 expert::Heading TrajectoryRecorder::heading() const {

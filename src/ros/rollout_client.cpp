@@ -139,7 +139,8 @@ void RolloutClient::onGoalDone(const actionlib::SimpleClientGoalState& state) {
 void RolloutClient::finishWhenDone() {
   if (phase_ != Phase::kPlaying || !goal_done_ || !recorder_->complete()) return;
   phase_ = Phase::kIdle;
-  on_done_();
+  const std::function<void()> on_done = std::move(on_done_);  // it may start the next plan, with an on_done_ of its own
+  on_done();
 }
 
 void RolloutClient::supervise() {

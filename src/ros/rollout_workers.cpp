@@ -38,7 +38,9 @@ void RolloutWorkers::start(const RolloutPlan& plan, std::function<void(learning:
     workers_[i]->client.start(
         share, [this](learning::Trajectory trajectory) { onTrajectory(std::move(trajectory)); },
         [this] {
-          if (--playing_ == 0) on_done_();
+          if (--playing_ > 0) return;
+          const std::function<void()> done = std::move(on_done_);  // it may start the next plan
+          done();
         });
     share.first_episode += share.episodes;
   }

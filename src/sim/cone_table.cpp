@@ -104,4 +104,12 @@ int ConeTable::nearest(Orientation orientation, InstanceMask present) const {
   return -1;
 }
 
+double ConeTable::exposure(int instance, InstanceMask present) const {
+  const std::vector<Orientation>& orientations = orientationsOf(instance);
+  const auto exposed = std::count_if(orientations.begin(), orientations.end(), [&](Orientation orientation) {
+    return nearest(orientation, present) == instance;
+  });
+  return orientations.empty() ? 0 : static_cast<double>(exposed) / static_cast<double>(orientations.size());
+}
+
 }  // namespace early_fusion::sim

@@ -32,6 +32,14 @@ TEST(Trace, TheExpertsTraceObeysTheRules) {
     EXPECT_EQ(now["step"], i);
     const double moved = std::abs(next["pan_deg"].get<double>() - now["pan_deg"].get<double>()) +
                          std::abs(next["tilt_deg"].get<double>() - now["tilt_deg"].get<double>());
+    for (const auto& entry : now["scene"]) {
+      const double exposure = entry["exposure"];
+      EXPECT_GE(exposure, 0);
+      EXPECT_LE(exposure, entry["present"] ? 1 : 0);
+    }
+    if (!now["in_cone"].empty()) {
+      EXPECT_GT(now["scene"][now["in_cone"][0].get<int>()]["exposure"], 0);
+    }
     if (now["action"] == "COLLECT") {
       ++collected;
       const int taken = now["in_cone"][0];
@@ -44,7 +52,7 @@ TEST(Trace, TheExpertsTraceObeysTheRules) {
       EXPECT_TRUE(now["request"].empty());
     } else {
       EXPECT_EQ(cheapest(next), cheapest(now) - 1) << i;
-      if (now["action"] != "REMOVE") EXPECT_DOUBLE_EQ(moved, 2.0);
+      EXPECT_DOUBLE_EQ(moved, now["action"] == "REMOVE" ? 0.0 : 2.0);
     }
   }
   EXPECT_GE(collected, 1);

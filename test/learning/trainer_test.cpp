@@ -203,13 +203,14 @@ TEST(Trainer, LearnsEveryRequestOfAFrame) {
   EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
 }
 
-/// Trains where, at random, half of the frames ask for COLLECT and half for one more PAN_LEFT before it.
+/// Trains where, at random, half of the frames ask for COLLECT and half for PAN_LEFT, so many steps from COLLECT.
 /// @return the mean probability of PAN_LEFT when the policy sees one of those frames three times.
-double panAfterVainCollects(bool vain_collects) {
+double panAfterVainCollects(bool vain_collects, int margin = 0, int steps = 2) {
   TrainingOptions options = tinyTraining();
   options.trajectories = 400;
   options.requests_per_frame = 1;
   options.vain_collects = vain_collects;
+  options.collect_margin = margin;
   const auto trainer = makeTrainer(options);
   while (!trainer->finished()) {
     while (!trainer->roundDue()) {
@@ -217,7 +218,7 @@ double panAfterVainCollects(bool vain_collects) {
       for (TrajectoryStep& step : trajectory.steps) {
         step.out_of_reach = step.action < core::Action::kCollect;
         step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}};
-        if (step.out_of_reach) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
+        if (step.out_of_reach) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, steps}}};
       }
       trainer->add(std::move(trajectory));
     }
@@ -244,6 +245,9 @@ double panAfterVainCollects(bool vain_collects) {
 TEST(Trainer, LearnsNotToRepeatACollectThatChangedNothing) {
   EXPECT_GT(panAfterVainCollects(true), 0.85);
   EXPECT_LT(panAfterVainCollects(false), 0.75);
+  EXPECT_GT(panAfterVainCollects(true, 1, 3), 0.85)
+      << "one move too early is three steps before it with a margin of one";
+  EXPECT_LT(panAfterVainCollects(true, 0, 3), 0.75);
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

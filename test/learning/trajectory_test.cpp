@@ -80,7 +80,7 @@ TEST_F(TrajectoryRecorderTest, LessonsAskForWhatIsThereAndHaveTheExpertsLabel) {
 }
 
 TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCome) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone(), Teacher::kSearching);
+  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone(), {Teacher::Kind::kSearching, 1});
   sim::EpisodeSetup setup = episode_.setup();
   setup.orientation = {6, 12};  // the right is out of view
   sim::Episode episode(shippedWorld(), task_, setup);
@@ -99,9 +99,10 @@ TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCom
     EXPECT_EQ(step.label.action,
               expert::label(episode.cone(), instances, state.present, state.orientation, state.request).action);
     for (const Lesson& lesson : step.lessons) {
-      EXPECT_EQ(lesson.label.action, expert::searchingLabel(episode.cone(), instances, state.present, state.orientation,
-                                                            heading, lesson.request)
-                                         .action);
+      const expert::Label label = expert::searchingLabel(episode.cone(), instances, state.present, state.orientation,
+                                                         heading, lesson.request, 1);
+      EXPECT_EQ(lesson.label.action, label.action);
+      EXPECT_EQ(lesson.label.steps, label.steps);
       searched += lesson.label.action !=
                   expert::label(episode.cone(), instances, state.present, state.orientation, lesson.request).action;
     }
@@ -111,9 +112,24 @@ TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCom
   EXPECT_GT(searched, 0) << "the two teachers are to differ";
 }
 
+TEST_F(TrajectoryRecorderTest, TheGreedyTeacherKeepsItsMargin) {
+  const std::vector<sim::Instance>& instances = episode_.setup().instances;
+  TrajectoryRecorder recorder(1, 6, instances, episode_.sharedCone(), {Teacher::Kind::kGreedy, 2});
+  const sim::EpisodeState& state = episode_.state();
+  int longer = 0;
+  for (const Lesson& lesson : recorder.record(state, frameAt(0)).lessons) {
+    const sim::InstanceMask wanted = expert::wantedInstances(instances, state.present, lesson.request);
+    const expert::Label with = expert::labelFor(episode_.cone(), wanted, state.present, state.orientation, 2);
+    EXPECT_EQ(lesson.label.action, with.action);
+    EXPECT_EQ(lesson.label.steps, with.steps);
+    longer += with.steps > expert::labelFor(episode_.cone(), wanted, state.present, state.orientation).steps;
+  }
+  EXPECT_GT(longer, 0);
+}
+
 TEST(Teacher, HasAName) {
-  EXPECT_EQ(teacherFromName("greedy"), Teacher::kGreedy);
-  EXPECT_EQ(teacherFromName("searching"), Teacher::kSearching);
+  EXPECT_EQ(teacherFromName("greedy"), Teacher::Kind::kGreedy);
+  EXPECT_EQ(teacherFromName("searching"), Teacher::Kind::kSearching);
   EXPECT_THROW(teacherFromName("wise"), core::Error);
 }
 

@@ -140,6 +140,26 @@ TEST(ConeTable, SkipsInstancesThatAreGone) {
   EXPECT_EQ(table.nearest(ahead, 0), -1);
 }
 
+TEST(ConeTable, ExposesWhatNothingStandsBefore) {
+  const auto world = testWorld();
+  const std::vector<Instance> instances = {{0, 1.0, 0, 0}, {0, 0.7, 0, 0}, {2, 0.8, 0.5, 0}};
+  const ConeTable table(*world, instances);
+  EXPECT_EQ(table.exposure(1, 0b111), 1);
+  EXPECT_EQ(table.exposure(2, 0b111), 1);
+  EXPECT_EQ(table.exposure(0, 0b101), 1);
+  int before = 0;
+  for (Orientation orientation : table.orientationsOf(0)) before += table.nearest(orientation, 0b111) != 0;
+  const double behind = table.exposure(0, 0b111);
+  EXPECT_DOUBLE_EQ(behind, 1 - static_cast<double>(before) / table.orientationsOf(0).size());
+  EXPECT_GT(behind, 0);  // its top shows over the other's
+  EXPECT_LT(behind, 0.5);
+}
+
+TEST(ConeTable, ExposesNothingThatIsNowhereInTheCone) {
+  const ConeTable table(*testWorld(), {{0, -2.0, 0, 0}});  // behind the camera
+  EXPECT_EQ(table.exposure(0, 1), 0);
+}
+
 TEST(ConeTable, OfNoInstancesIsEmpty) {
   const ConeTable table(*testWorld(), {});
   EXPECT_EQ(table.nearest({0, 10}, ~0u), -1);

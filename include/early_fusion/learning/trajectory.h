@@ -43,16 +43,20 @@ struct Trajectory {
 };
 
 /// Who labels what a policy is trained on.
-enum class Teacher {
-  kGreedy,     ///< the paper's expert, which sees everything: expert::label()
-  kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
+struct Teacher {
+  enum class Kind {
+    kGreedy,     ///< the paper's expert, which sees everything: expert::label()
+    kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
+  };
+  Kind kind = Kind::kGreedy;
+  int margin = 0;  ///< [steps] see expert::labelFor()
 };
 
 /// "greedy", "searching".
 const std::vector<std::string>& teacherNames();
 
 /// @throws Error naming the known ones.
-Teacher teacherFromName(const std::string& name);
+Teacher::Kind teacherFromName(const std::string& name);
 
 /// Turns the states of one episode into a labelled trajectory; the same class serves rollouts in one process and the
 /// trainer node, which sees the states as messages.
@@ -60,7 +64,7 @@ class TrajectoryRecorder {
  public:
   /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
   TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone, Teacher teacher = Teacher::kGreedy);
+                     std::shared_ptr<const sim::ConeTable> cone, const Teacher& teacher = {});
 
   /// Labels a state and keeps it; states must come in order from step 0.
   /// @return the step, valid until the next call. Its action is IDLE until setAction().

@@ -27,7 +27,9 @@ class RolloutWorkers {
   /// Gives every worker's policy its weights (latched).
   void publish(const Weights& weights);
 
-  /// Begins a plan, as RolloutClient::start(): the callbacks come with each trajectory, in order, and after the last.
+  /// Begins a plan, as RolloutClient::start(), but not while one is at hand.
+  /// @param on_trajectory called with each trajectory, in order.
+  /// @param on_done called after the last one; may start the next plan.
   void start(const RolloutPlan& plan, std::function<void(learning::Trajectory)> on_trajectory,
              std::function<void()> on_done);
 

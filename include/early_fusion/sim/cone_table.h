@@ -35,6 +35,10 @@ class ConeTable {
   /// All orientations at which an instance is in the cone.
   const std::vector<Orientation>& orientationsOf(int instance) const { return orientations_of_[instance]; }
 
+  /// The share of those at which it is the nearest of `present`, of which it must be one: 0 where nothing but REMOVE
+  /// makes way to it, 1 where nothing stands before it. [0, 1]
+  double exposure(int instance, InstanceMask present) const;
+
  private:
   OrientationLattice lattice_;
   std::vector<std::uint32_t> offsets_;  // by lattice index, into nearest_first_
