@@ -65,6 +65,7 @@ class Searcher {
   /// Whether `instance` is the nearest here, and it or another spared one up to so many steps to each side. A step that
   /// the joints don't allow can't be one too many.
   bool hasMargin(int instance, sim::Orientation at, int margin) const {
+    if (margin > 0 && cone_.nearest(at, present_) != instance) return false;
     const auto takesSpared = [&](int pan, int tilt) {
       const sim::Orientation other{at.pan + pan, at.tilt + tilt};
       if (!cone_.lattice().contains(other)) return true;
@@ -74,7 +75,7 @@ class Searcher {
     for (int n = 1; n <= margin; ++n) {
       if (!takesSpared(n, 0) || !takesSpared(-n, 0) || !takesSpared(0, n) || !takesSpared(0, -n)) return false;
     }
-    return margin == 0 || cone_.nearest(at, present_) == instance;
+    return true;
   }
 
   /// An occluder can be removed from wherever it is the nearest: here too, if it must go anyway.
