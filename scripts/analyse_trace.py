@@ -4,8 +4,8 @@
 Example: early_fusion evaluate --policy models/simple.safetensors --task simple --trace trace.json
          scripts/analyse_trace.py trace.json
 Prints, in Markdown: what the policy does where the expert would do what; how many requested objects were collected, by
-type, by how far they were at the start, by how much stood before them; what was collected by mistake; and how the
-episodes end in which something requested is left.
+type, by how far they were at the start, by how much stood before them; what was collected by mistake; and what of the F1
+was lost to which cause.
 """
 import argparse
 import collections
@@ -14,6 +14,8 @@ import sys
 
 ACTIONS = ["PAN_LEFT", "PAN_RIGHT", "TILT_UP", "TILT_DOWN", "COLLECT", "REMOVE", "IDLE"]
 LAST = 8  # steps that an ending is told from
+NEAR = 3  # steps that collecting what stands beside would still have cost
+SHOWN = 8  # episodes of a kind that are named
 
 
 def read_episodes(path):
@@ -96,26 +98,61 @@ def mistakes(episodes):
           [[item, request, count] for (item, request), count in wrong.most_common(10)])
 
 
+def score(steps):
+    """(collected and requested, collected, requested, F1)"""
+    items = [(taken(step), step["request"]) for step in steps if taken(step) is not None]
+    right = sum(item in request for item, request in items)
+    requested = len(steps[0]["request"])
+    return right, len(items), requested, 2 * right / (len(items) + requested)
+
+
+def mistake(step):
+    """What led to a COLLECT that took something not requested."""
+    if not step["request"]:
+        return "collected when nothing was requested any more"
+    instances = {entry["instance"]: entry["item"] for entry in step["scene"]}
+    if any(instances[instance] in step["request"] for instance in step["in_cone"]):
+        return "collected what stands before a requested object in the cone"
+    if min((cost["steps"] for cost in step["expert_costs"]), default=LAST) <= NEAR:
+        return f"collected what stands beside a requested object, {NEAR - 1} moves from it or less"
+    return "collected something else"
+
+
 def ending(steps):
+    """Why something requested is left at the end."""
     last = steps[-LAST:]
     places = {(step["pan_deg"], step["tilt_deg"]) for step in last}
-    actions = {step["action"] for step in last}
+    if min((cost["steps"] for cost in steps[0]["expert_costs"]), default=0) > len(steps):
+        return "out of reach: the expert needs more steps than there are, too"
+    if not any(entry["exposure"] for entry in last[-1]["scene"] if entry["item"] in last[-1]["request"]):
+        return "not collected: nothing but REMOVE makes way to it"
     if len(places) == 1:
-        return f"the same in vain: {', '.join(sorted(actions))}"
-    if len(places) <= 3:
-        return "to and fro"
-    return "under way"
+        return f"not collected: {' and '.join(sorted({step['action'] for step in last}))} in vain"
+    return "not collected: to and fro" if len(places) <= 3 else "not collected: still under way when time was up"
 
 
-def endings(episodes):
-    failed = [steps for steps in episodes if steps[-1]["request"] and taken(steps[-1]) not in steps[-1]["request"]]
-    groups = collections.defaultdict(list)
-    for steps in failed:
-        groups[ending(steps)].append(steps[0]["episode"])
-    table(f"How the {len(failed)} of {len(episodes)} episodes end in which something requested is left",
-          ["the last steps", "episodes", "which"],
-          [[name, len(which), ", ".join(map(str, which[:8])) + (", ..." if len(which) > 8 else "")]
-           for name, which in sorted(groups.items(), key=lambda group: -len(group[1]))])
+def faults(steps):
+    """Why an episode's F1 is less than 1: a cause for each mistake and for each requested object not collected."""
+    wrong = [mistake(step) for step in steps if taken(step) is not None and taken(step) not in step["request"]]
+    right, _, requested, _ = score(steps)
+    left = len(steps[-1]["request"]) - (taken(steps[-1]) in steps[-1]["request"])
+    return wrong + ["removed a requested object"] * (requested - right - left) + [ending(steps)] * left
+
+
+def losses(episodes):
+    lost, counts, which = collections.Counter(), collections.Counter(), collections.defaultdict(list)
+    for steps in episodes:
+        causes = faults(steps)
+        for cause in causes:
+            counts[cause] += 1
+            lost[cause] += (1 - score(steps)[-1]) / len(causes) / len(episodes)
+            which[cause].append(steps[0]["episode"])
+    table(f"What F1 {sum(score(steps)[-1] for steps in episodes) / len(episodes):.3f} lacks of 1 (each episode's share "
+          "divided equally among what went wrong in it)",
+          ["cause", "F1 lost", "times", "episodes"],
+          [[cause, f"{loss:.4f}", counts[cause],
+            ", ".join(map(str, which[cause][:SHOWN])) + (", ..." if len(which[cause]) > SHOWN else "")]
+           for cause, loss in lost.most_common()])
 
 
 def main():
@@ -128,7 +165,7 @@ def main():
                  lambda steps, item: distance(steps), episodes)
     collected_by("By the share of the orientations towards it at which nothing stood before it", exposure, episodes)
     mistakes(episodes)
-    endings(episodes)
+    losses(episodes)
 
 
 if __name__ == "__main__":
