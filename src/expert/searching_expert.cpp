@@ -32,14 +32,14 @@ bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orienta
 }
 
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                     sim::Orientation orientation, Heading heading, const core::Request& request, int margin) {
+                     sim::Orientation orientation, Heading heading, const core::Request& request) {
   const sim::InstanceMask wanted = wantedInstances(instances, present, request);
   sim::InstanceMask in_view = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const sim::InstanceMask instance = sim::InstanceMask(1) << i;
     if ((wanted & instance) && isInView(cone, static_cast<int>(i), orientation)) in_view |= instance;
   }
-  if (wanted == 0 || in_view != 0) return labelFor(cone, in_view, present, orientation, margin);
+  if (wanted == 0 || in_view != 0) return labelFor(cone, in_view, present, orientation);
   const Action action = search(cone.lattice(), orientation, heading);
   return {action, bit(action), 0};
 }

@@ -13,7 +13,7 @@ constexpr int kLockstep = 10;
 }  // namespace
 
 struct RolloutRunner::Seat {
-  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number, const Teacher& teacher,
+  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number, Teacher teacher,
        sim::Rasterizer& seat_rasterizer)
       : episode(world, task, sim::sampleEpisode(world, task, seed, number)),
         recorder(seed, number, episode.setup().instances, episode.sharedCone(), teacher),
@@ -25,7 +25,7 @@ struct RolloutRunner::Seat {
   core::Image image;
 };
 
-RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, const Teacher& teacher)
+RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher)
     : world_(world), task_(task), seed_(seed), teacher_(teacher) {
   for (int i = 0; i < kLockstep; ++i) rasterizers_.emplace_back(world, world.options.image_size);
 }

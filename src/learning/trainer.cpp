@@ -28,12 +28,13 @@ core::OptionSet TrainingOptions::options() {
   set.addChoice("teacher", teacher, teacherNames(),
                 "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
                 "not in view");
-  set.add("collect_margin", collect_margin, 0, 5, "steps",
-          "that the teacher goes on beyond where COLLECT would first succeed, so that a policy may miss it by as many");
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
   set.add("soft_labels", soft_labels, 0, 1, "",
           "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");
+  set.add("unlikelihood", unlikelihood, 0, 1000, "",
+          "weight of the unlikelihood loss of what does harm: to COLLECT what is not requested, to REMOVE what is, and "
+          "to COLLECT again where it has just changed nothing");
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
   set.addChoice("exploration", exploration, model::actionChoiceNames(), "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
@@ -146,6 +147,13 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
     sample.observation.request = &lesson.request;
     sample.weight = action_weights_[static_cast<int>(lesson.label.action)];
     sample.target = target(lesson.label);
+    expert::ActionSet harmful = lesson.harmful;
+    if (step.out_of_reach && observation.frames[0] == observation.frames[1])
+      harmful |= expert::bit(core::Action::kCollect);
+    for (core::Action action : core::kAllActions) {
+      if (expert::contains(harmful, action))
+        sample.unlikelihood[static_cast<int>(action)] = float(options_.unlikelihood);
+    }
     batch.push_back(sample);
   };
   for (std::size_t i = 0; i < lessonCount(step); ++i) add(step.lessons[i]);
@@ -154,8 +162,7 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
   // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
   observation.frames = {now, now, index.step % 2 == 1 ? now : before};
   for (std::size_t i = 0; i < lessonCount(step); ++i) {
-    const int steps = step.lessons[i].label.steps;
-    if (steps >= 2 && steps <= 2 + options_.collect_margin) add(step.lessons[i]);
+    if (step.lessons[i].label.steps == 2) add(step.lessons[i]);
   }
 }
 

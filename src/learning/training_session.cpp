@@ -97,7 +97,7 @@ void TrainingSession::resume() {
       [this](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
         std::vector<Trajectory> window;
         const std::unique_ptr<Agent> agent = makeReplayAgent(episodes, actions);
-        RolloutRunner(*world_, task_, options_.seed, options_.training.labeller())
+        RolloutRunner(*world_, task_, options_.seed, teacherFromName(options_.training.teacher))
             .run({episodes.begin(), episodes.end()}, *agent, true,
                  [&](Trajectory trajectory) { window.push_back(std::move(trajectory)); });
         return window;
@@ -186,7 +186,8 @@ void TrainingSession::finish(const Evaluation& evaluation) {
 
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
-  RolloutRunner runner(session.world(), session.task(), session.options().seed, trainer.options().labeller());
+  RolloutRunner runner(session.world(), session.task(), session.options().seed,
+                       teacherFromName(trainer.options().teacher));
   const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
     const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);

@@ -13,8 +13,8 @@ const std::vector<std::string>& teacherNames() {
   return names;
 }
 
-Teacher::Kind teacherFromName(const std::string& name) {
-  return static_cast<Teacher::Kind>(core::indexOf(name, teacherNames(), "teacher"));
+Teacher teacherFromName(const std::string& name) {
+  return static_cast<Teacher>(core::indexOf(name, teacherNames(), "teacher"));
 }
 
 double Trajectory::agreement() const {
@@ -25,7 +25,7 @@ double Trajectory::agreement() const {
 }
 
 TrajectoryRecorder::TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                                       std::shared_ptr<const sim::ConeTable> cone, const Teacher& teacher)
+                                       std::shared_ptr<const sim::ConeTable> cone, Teacher teacher)
     : seed_(seed), instances_(std::move(instances)), cone_(std::move(cone)), teacher_(teacher) {
   trajectory_.episode = episode;
 }
@@ -63,13 +63,18 @@ Trajectory TrajectoryRecorder::finish(const sim::Score& score) {
   return std::move(trajectory_);
 }
 
-expert::Label TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Request& request) const {
-  if (teacher_.kind == Teacher::Kind::kSearching) {
-    return expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request,
-                                  teacher_.margin);
+Lesson TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Request& request) const {
+  Lesson lesson;
+  lesson.request = request;
+  lesson.label = teacher_ == Teacher::kGreedy
+                     ? expert::label(*cone_, instances_, state.present, state.orientation, request)
+                     : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
+  const int nearest = cone_->nearest(state.orientation, state.present);
+  if (nearest >= 0) {
+    const bool requested = std::find(request.begin(), request.end(), instances_[nearest].item) != request.end();
+    lesson.harmful = expert::bit(requested ? core::Action::kRemove : core::Action::kCollect);
   }
-  const sim::InstanceMask wanted = expert::wantedInstances(instances_, state.present, request);
-  return expert::labelFor(*cone_, wanted, state.present, state.orientation, teacher_.margin);
+  return lesson;
 }
 
 expert::Heading TrajectoryRecorder::heading() const {
@@ -85,7 +90,7 @@ expert::Heading TrajectoryRecorder::heading() const {
 /// done something else, so whoever tries to COLLECT and sees the same again must be told of nothing but its mistake.
 std::vector<Lesson> TrajectoryRecorder::lessons(const sim::EpisodeState& state, bool moved) const {
   constexpr int kDraws = 2 * kRequestsPerFrame;  // some give a request again that is there already
-  std::vector<Lesson> lessons{{state.request, lesson(state, state.request)}};
+  std::vector<Lesson> lessons{lesson(state, state.request)};
   std::vector<int> items;
   for (std::size_t i = 0; i < instances_.size(); ++i) {
     if ((state.present >> i) & 1) items.push_back(instances_[i].item);
@@ -99,7 +104,7 @@ std::vector<Lesson> TrajectoryRecorder::lessons(const sim::EpisodeState& state, 
     std::sort(request.begin(), request.end());
     const bool known =
         std::any_of(lessons.begin(), lessons.end(), [&](const Lesson& other) { return other.request == request; });
-    if (!known) lessons.push_back({request, lesson(state, request)});
+    if (!known) lessons.push_back(lesson(state, request));
   }
   return lessons;
 }

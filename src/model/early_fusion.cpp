@@ -104,7 +104,7 @@ template <class T>
 void EarlyFusion<T>::reserve(int images) {
   if (counts_.rows() >= images) return;
   counts_.resize(images, vocabulary_.size());
-  targets_.resize(images, core::kActionCount);
+  for (nn::Matrix* matrix : {&targets_, &unlikelihoods_}) matrix->resize(images, core::kActionCount);
   sample_weights_.resize(images);
   for (nn::Matrix* matrix : {&goals_, &dgoals_, &activations_, &dactivations_})
     matrix->resize(images, options_.channels);
@@ -130,7 +130,10 @@ void EarlyFusion<T>::prepareBatch(const std::vector<Sample>& samples) {
       batch_.views.push_back(sample.observation.frames);
       batch_.first_goal.push_back(static_cast<int>(i));
     }
-    for (int k = 0; k < core::kActionCount; ++k) targets_(i, k) = sample.target[k];
+    for (int k = 0; k < core::kActionCount; ++k) {
+      targets_(i, k) = sample.target[k];
+      unlikelihoods_(i, k) = sample.unlikelihood[k];
+    }
     sample_weights_[i] = sample.weight;
     weight_sum += sample.weight;
   }
@@ -151,7 +154,8 @@ double EarlyFusion<T>::lossAndGradients(const std::vector<Sample>& samples, std:
   activations_.topRows(rows) = (activations_.topRows(rows).array() < 0.f).select(0.f, activations_.topRows(rows));
   dropout_.forward(activations_, rows, dropout_seed);
   output_.forward(activations_, rows, logits_);
-  const double loss = nn::softmaxCrossEntropy(logits_, targets_, sample_weights_, rows, dlogits_);
+  const double loss = nn::softmaxCrossEntropy(logits_, targets_, sample_weights_, rows, dlogits_) +
+                      nn::unlikelihoodLoss(logits_, unlikelihoods_, sample_weights_, rows, dlogits_);
 
   output_.backward(activations_, dlogits_, rows, &dactivations_);
   dropout_.backward(dactivations_, rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace early_fusion::nn {
 
@@ -30,6 +31,36 @@ double softmaxCrossEntropy(const Matrix& logits, const Matrix& targets, const Ei
       const double log_probability = logits(i, k) - log_sum;
       loss -= weight * targets(i, k) * log_probability;
       dlogits(i, k) = static_cast<float>(weight * (target_sum * std::exp(log_probability) - targets(i, k)));
+    }
+  }
+  return loss;
+}
+
+double unlikelihoodLoss(const Matrix& logits, const Matrix& unlikelihoods, const Eigen::VectorXd& weights, int rows,
+                        Matrix& dlogits) {
+  const double weight_sum = weights.head(rows).sum();
+  const Eigen::Index classes = logits.cols();
+  double loss = 0;
+  for (int i = 0; i < rows; ++i) {
+    for (Eigen::Index k = 0; k < classes; ++k) {
+      if (unlikelihoods(i, k) == 0) continue;
+      double greatest_other = -std::numeric_limits<double>::infinity();
+      for (Eigen::Index j = 0; j < classes; ++j) {
+        if (j != k) greatest_other = std::max<double>(greatest_other, logits(i, j));
+      }
+      double sum = 0;
+      for (Eigen::Index j = 0; j < classes; ++j) {
+        if (j != k) sum += std::exp(logits(i, j) - greatest_other);
+      }
+      // 1 - p_k = 1 / (1 + exp(odds)), which doesn't cancel where p_k is next to 1.
+      const double others = greatest_other + std::log(sum);
+      const double odds = logits(i, k) - others;
+      const double weight = weights[i] / weight_sum * unlikelihoods(i, k);
+      loss += weight * (std::max(odds, 0.) + std::log1p(std::exp(-std::abs(odds))));
+      const double gradient = weight / (1 + std::exp(-odds));
+      for (Eigen::Index j = 0; j < classes; ++j) {
+        dlogits(i, j) += static_cast<float>(j == k ? gradient : -gradient * std::exp(logits(i, j) - others));
+      }
     }
   }
   return loss;

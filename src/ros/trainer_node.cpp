@@ -89,7 +89,7 @@ void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_
   plan.episodes = static_cast<std::uint32_t>(episodes);
   plan.weights = weights_id_;
   plan.mode = mode;
-  plan.teacher = session_->options().training.labeller();
+  plan.teacher = learning::teacherFromName(session_->options().training.teacher);
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 

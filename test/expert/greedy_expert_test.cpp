@@ -223,69 +223,6 @@ TEST(GreedyExpert, LabelsAsItDecides) {
   }
 }
 
-/// Whether COLLECT takes a wanted instance here and up to `margin` steps to each side.
-bool isForgiving(const Scene& scene, const State& state, sim::InstanceMask wanted, int margin) {
-  const auto takesWanted = [&](Orientation at) {
-    if (!scene.cone.lattice().contains(at)) return true;
-    const int nearest = scene.cone.nearest(at, state.present);
-    return nearest >= 0 && ((wanted >> nearest) & 1u) != 0;
-  };
-  const auto [pan, tilt] = state.orientation;
-  bool all = takesWanted({pan, tilt});
-  for (int n = 1; n <= margin; ++n) {
-    all = all && takesWanted({pan + n, tilt}) && takesWanted({pan - n, tilt});
-    all = all && takesWanted({pan, tilt + n}) && takesWanted({pan, tilt - n});
-  }
-  return all;
-}
-
-/// The most, up to `margin`, that any orientation gives an instance.
-int mostForgiving(const Scene& scene, const State& state, sim::InstanceMask wanted, int instance, int margin) {
-  int most = 0;
-  for (Orientation at : scene.cone.orientationsOf(instance)) {
-    if (scene.cone.nearest(at, state.present) != instance) continue;
-    while (most < margin && isForgiving(scene, {at, state.present}, wanted, most + 1)) ++most;
-  }
-  return most;
-}
-
-TEST(GreedyExpert, CollectsWithAMarginWhereThereIsOne) {
-  core::Random random(11);
-  constexpr int kMargin = 2;
-  std::map<int, int> collected;  // by the margin that there was
-  int longer = 0;
-  for (int i = 0; i < 60; ++i) {
-    const Scene scene = crowdedScene(random, 8);
-    State state = randomState(scene, random);
-    const core::Request request = {random.below(4), random.below(4)};
-    const sim::InstanceMask wanted = wantedInstances(scene.instances, state.present, request);
-    if (wanted == 0) continue;
-    const auto labelled = [&] { return labelFor(scene.cone, wanted, state.present, state.orientation, kMargin); };
-    Label now = labelled();
-    longer += now.steps > scene.cheapest(state, request);
-    for (int step = 0; now.action != Action::kCollect; ++step) {
-      ASSERT_LT(step, 200) << "on the way for ever";
-      for (Action action : core::kAllActions) {
-        if (!contains(now.optimal, action)) continue;
-        const State next = after(scene.cone, state, action);
-        EXPECT_EQ(next.present & wanted, wanted) << core::actionName(action) << " takes what is wanted";
-        if (action == Action::kRemove) continue;  // what was hidden may have a margin now, and the way be longer
-        EXPECT_EQ(labelFor(scene.cone, wanted, next.present, next.orientation, kMargin).steps, now.steps - 1);
-      }
-      state = after(scene.cone, state, now.action);
-      now = labelled();
-    }
-    const int nearest = scene.cone.nearest(state.orientation, state.present);
-    ASSERT_GE(nearest, 0);
-    const int most = mostForgiving(scene, state, wanted, nearest, kMargin);
-    EXPECT_TRUE(isForgiving(scene, state, wanted, most));
-    EXPECT_EQ(now.steps, 1);
-    ++collected[most];
-  }
-  for (int margin = 0; margin <= kMargin; ++margin) EXPECT_GT(collected[margin], 0) << margin;
-  EXPECT_GT(longer, 20);
-}
-
 TEST(GreedyExpert, LabelsWithoutAllocating) {
   core::Random random(7);
   const Scene scene = crowdedScene(random, 12);
@@ -293,9 +230,7 @@ TEST(GreedyExpert, LabelsWithoutAllocating) {
   const State state = randomState(scene, random);
   const long before = allocations;
   for (int index = 0; index < scene.cone.lattice().size(); ++index) {
-    const Orientation at = scene.cone.lattice().at(index);
-    label(scene.cone, scene.instances, state.present, at, request);
-    labelFor(scene.cone, 0b111, state.present, at, 1);
+    label(scene.cone, scene.instances, state.present, scene.cone.lattice().at(index), request);
   }
   EXPECT_EQ(allocations, before);
   EXPECT_FALSE(scene.decide(state, request).costs.empty());

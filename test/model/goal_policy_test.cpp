@@ -111,6 +111,7 @@ TEST_P(EveryPrecision, LearnsABatchByHeart) {
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {
     batch.samples[i].target.fill(0);
     batch.samples[i].target[i % core::kActionCount] = 1;
+    batch.samples[i].unlikelihood.fill(0);
   }
   train(*policy, batch, 150, 3e-3);
   EXPECT_LT(policy->lossAndGradients(batch.samples, 0), 0.1);
@@ -259,7 +260,9 @@ TEST_P(EveryPrecision, WithRunningStatisticsTheLossIsThatOfWhatItPredicts) {
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {
     const Sample& sample = batch.samples[i];
     for (int a = 0; a < core::kActionCount; ++a) {
-      expected -= sample.weight * sample.target[a] * std::log(probabilities(static_cast<Eigen::Index>(i), a));
+      const float probability = probabilities(static_cast<Eigen::Index>(i), a);
+      expected -= sample.weight * sample.target[a] * std::log(probability);
+      expected -= sample.weight * sample.unlikelihood[a] * std::log(1 - probability);
     }
     weights += sample.weight;
   }

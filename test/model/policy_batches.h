@@ -16,7 +16,7 @@ inline core::Vocabulary testVocabulary(int items) {
 }
 
 /// Samples with the frames and requests that they point to: smooth noise, some black frames, requests of zero to three
-/// items of which one may stand twice, soft targets and unequal weights.
+/// items of which one may stand twice, soft targets, unlikely actions and unequal weights.
 struct TestBatch {
   TestBatch(int count, int image_size, int items, std::uint64_t seed) : frames(count + 2), requests(count) {
     core::Random random(seed, {77});
@@ -37,6 +37,8 @@ struct TestBatch {
       const int first = random.below(core::kActionCount), second = random.below(core::kActionCount);
       sample.target[first] += 0.75f;
       sample.target[second] += 0.25f;
+      const int unlikely = (std::max(first, second) + 1) % core::kActionCount;
+      if (i % 2 == 0 && sample.target[unlikely] == 0) sample.unlikelihood[unlikely] = 0.5f;
       samples.push_back(sample);
     }
   }

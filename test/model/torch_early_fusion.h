@@ -58,6 +58,7 @@ struct TorchBatch {
     images = torch::zeros({n, 9, image_size, image_size});
     counts = torch::zeros({n, items});
     targets = torch::zeros({n, core::kActionCount});
+    unlikelihoods = torch::zeros({n, core::kActionCount});
     weights = torch::zeros({n});
     for (std::int64_t i = 0; i < n; ++i) {
       torch::Tensor newer = torch::full({3, image_size, image_size}, 128.f);
@@ -73,17 +74,21 @@ struct TorchBatch {
         newer = frame;
       }
       for (int item : *samples[i].observation.request) counts[i][item] += 1;
-      for (int k = 0; k < core::kActionCount; ++k) targets[i][k] = samples[i].target[k];
+      for (int k = 0; k < core::kActionCount; ++k) {
+        targets[i][k] = samples[i].target[k];
+        unlikelihoods[i][k] = samples[i].unlikelihood[k];
+      }
       weights[i] = samples[i].weight;
     }
   }
 
   torch::Tensor loss(const torch::Tensor& logits) const {
-    const torch::Tensor entropies = -(targets * torch::log_softmax(logits, 1)).sum(1);
-    return (weights * entropies).sum() / weights.sum();
+    const torch::Tensor logs = torch::log_softmax(logits, 1);
+    const torch::Tensor losses = -(targets * logs + unlikelihoods * torch::log1p(-logs.exp())).sum(1);
+    return (weights * losses).sum() / weights.sum();
   }
 
-  torch::Tensor images, counts, targets, weights;
+  torch::Tensor images, counts, targets, unlikelihoods, weights;
 };
 
 }  // namespace early_fusion::model

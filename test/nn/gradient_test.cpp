@@ -154,8 +154,10 @@ struct CrossEntropyCheck : LayerCheck {
   CrossEntropyCheck()
       : logits(randomNumbers(kRows * kClasses, random, -3, 3)),
         targets(randomNumbers(kRows * kClasses, random, 0, 1)),
+        unlikelihoods(randomNumbers(kRows * kClasses, random, 0, 3)),
         weights(randomNumbers(kRows, random, 0.1, 2)) {
     weights[2] = 0;
+    unlikelihoods[1] = 0;
   }
 
   double loss() override {
@@ -164,7 +166,9 @@ struct CrossEntropyCheck : LayerCheck {
       double normaliser = 0;
       for (int k = 0; k < kClasses; ++k) normaliser += std::exp(logits[row * kClasses + k]);
       for (int k = 0; k < kClasses; ++k) {
-        sum -= weights[row] * targets[row * kClasses + k] * std::log(std::exp(logits[row * kClasses + k]) / normaliser);
+        const double probability = std::exp(logits[row * kClasses + k]) / normaliser;
+        sum -= weights[row] * targets[row * kClasses + k] * std::log(probability);
+        sum -= weights[row] * unlikelihoods[row * kClasses + k] * std::log(1 - probability);
       }
       weight_sum += weights[row];
     }
@@ -174,14 +178,16 @@ struct CrossEntropyCheck : LayerCheck {
   std::vector<Checked> tensors() override {
     Matrix dlogits(kRows, kClasses);
     const Eigen::VectorXd row_weights = Eigen::Map<Eigen::VectorXd>(weights.data(), kRows);
-    const double value = softmaxCrossEntropy(toMatrix(logits, kRows, kClasses), toMatrix(targets, kRows, kClasses),
-                                             row_weights, kRows, dlogits);
+    const Matrix matrix = toMatrix(logits, kRows, kClasses);
+    const double value =
+        softmaxCrossEntropy(matrix, toMatrix(targets, kRows, kClasses), row_weights, kRows, dlogits) +
+        unlikelihoodLoss(matrix, toMatrix(unlikelihoods, kRows, kClasses), row_weights, kRows, dlogits);
     EXPECT_NEAR(value, loss(), 1e-6);
     return {{"logits", &logits, fromMatrix(dlogits)}};
   }
 
   core::Random random{14};
-  Numbers logits, targets, weights;
+  Numbers logits, targets, unlikelihoods, weights;
 };
 
 struct Case {

@@ -34,5 +34,26 @@ TEST(SoftmaxCrossEntropy, StaysFiniteForSureAndWrong) {
   EXPECT_NEAR(dlogits(0, 0), 1, 1e-6);
 }
 
+TEST(UnlikelihoodLoss, IsTheLogarithmOfWhatIsLeftToTheOthers) {
+  Matrix logits(2, 3), unlikelihoods(2, 3), dlogits = Matrix::Ones(2, 3);
+  logits << 2, 1, 0, 5, 5, 5;
+  unlikelihoods << 4, 0, 0, 0, 0, 0;
+  const double p = std::exp(2.0) / (std::exp(2.0) + std::exp(1.0) + 1);
+  EXPECT_NEAR(unlikelihoodLoss(logits, unlikelihoods, Eigen::Vector2d(3, 1), 2, dlogits), -0.75 * 4 * std::log(1 - p),
+              1e-6);
+  EXPECT_NEAR(dlogits(0, 0), 1 + 0.75 * 4 * p, 1e-6) << "the gradient is added";
+  EXPECT_NEAR(dlogits.row(0).sum(), 3, 1e-6);
+  EXPECT_EQ(dlogits.row(1), Matrix::Ones(1, 3));
+}
+
+TEST(UnlikelihoodLoss, StaysFiniteForSureAndWrong) {
+  Matrix logits(1, 2), unlikelihoods(1, 2), dlogits = Matrix::Zero(1, 2);
+  logits << 500.f, -500.f;
+  unlikelihoods << 1, 1;
+  EXPECT_NEAR(unlikelihoodLoss(logits, unlikelihoods, Eigen::VectorXd::Ones(1), 1, dlogits), 1000, 1e-3);
+  EXPECT_NEAR(dlogits(0, 0), 1, 1e-6);
+  EXPECT_NEAR(dlogits(0, 1), -1, 1e-6);
+}
+
 }  // namespace
 }  // namespace early_fusion::nn

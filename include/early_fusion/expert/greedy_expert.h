@@ -49,11 +49,8 @@ struct Label {
 };
 
 /// @param wanted instances to go for.
-/// @param margin [steps] of pan or tilt by which the camera could miss the orientation that it goes to and COLLECT
-/// would still take a wanted instance; less, down to 0, for one that no orientation gives so much. With 0 the decision
-/// is decide()'s.
 Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::InstanceMask present,
-               sim::Orientation orientation, int margin = 0);
+               sim::Orientation orientation);
 
 /// The same for the instances of the requested types.
 Label label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,

@@ -19,8 +19,7 @@ bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orienta
 /// imitates it learns to turn to and fro wherever the next unseen object is as likely on either side.
 ///
 /// @param heading of the camera over the pictures that the policy sees.
-/// @param margin of the greedy way, see labelFor().
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                     sim::Orientation orientation, Heading heading, const core::Request& request, int margin = 0);
+                     sim::Orientation orientation, Heading heading, const core::Request& request);
 
 }  // namespace early_fusion::expert

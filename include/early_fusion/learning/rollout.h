@@ -17,7 +17,7 @@ namespace early_fusion::learning {
 class RolloutRunner {
  public:
   /// `world` must outlive the runner. @param seed of the session: (seed, number) is an episode.
-  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, const Teacher& teacher = {});
+  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher = Teacher::kGreedy);
 
   const sim::Task& task() const { return task_; }
   std::uint64_t seed() const { return seed_; }

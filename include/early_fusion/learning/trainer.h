@@ -25,10 +25,10 @@ struct TrainingOptions {
   int requests_per_frame = 1;          ///< that a frame is labelled and learnt for: the policy's own and others
   bool vain_collects = false;          ///< learn also what to do after a COLLECT that came one move too early
   std::string teacher = "greedy";      ///< who labels: one of teacherNames()
-  int collect_margin = 0;              ///< [steps] the teacher's, see Teacher
   double learning_rate = 1e-4;         ///< at the session's start
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
   double soft_labels = 0;              ///< share of a target that goes to all optimal actions alike, not to the label
+  double unlikelihood = 0;             ///< weight of the unlikelihood loss of actions that would do harm
   double balance = 0;                  ///< weight of a sample: (the label's frequency in the window)^-balance
   std::string exploration = "sample";  ///< how rollouts choose: one of model::actionChoiceNames()
   double weight_decay = 0;             ///< decoupled, a step
@@ -36,9 +36,6 @@ struct TrainingOptions {
   double averaging = 0;                ///< of the weights over steps: the share of the old mean, 0 for none
 
   core::OptionSet options();
-
-  /// Who labels. @throws Error for an unknown name.
-  Teacher labeller() const { return {teacherFromName(teacher), collect_margin}; }
 };
 
 /// What one round of training did.

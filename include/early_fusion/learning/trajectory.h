@@ -16,6 +16,7 @@ namespace early_fusion::learning {
 struct Lesson {
   core::Request request;
   expert::Label label;
+  expert::ActionSet harmful = 0;  ///< COLLECT where it would take something else, REMOVE where it would take this
 };
 
 /// For how many requests a frame is labelled, the policy's own among them, if the scene has so many.
@@ -43,20 +44,16 @@ struct Trajectory {
 };
 
 /// Who labels what a policy is trained on.
-struct Teacher {
-  enum class Kind {
-    kGreedy,     ///< the paper's expert, which sees everything: expert::label()
-    kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
-  };
-  Kind kind = Kind::kGreedy;
-  int margin = 0;  ///< [steps] see expert::labelFor()
+enum class Teacher {
+  kGreedy,     ///< the paper's expert, which sees everything: expert::label()
+  kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
 };
 
 /// "greedy", "searching".
 const std::vector<std::string>& teacherNames();
 
 /// @throws Error naming the known ones.
-Teacher::Kind teacherFromName(const std::string& name);
+Teacher teacherFromName(const std::string& name);
 
 /// Turns the states of one episode into a labelled trajectory; the same class serves rollouts in one process and the
 /// trainer node, which sees the states as messages.
@@ -64,7 +61,7 @@ class TrajectoryRecorder {
  public:
   /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
   TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone, const Teacher& teacher = {});
+                     std::shared_ptr<const sim::ConeTable> cone, Teacher teacher = Teacher::kGreedy);
 
   /// Labels a state and keeps it; states must come in order from step 0.
   /// @return the step, valid until the next call. Its action is IDLE until setAction().
@@ -82,7 +79,7 @@ class TrajectoryRecorder {
   Trajectory finish(const sim::Score& score);
 
  private:
-  expert::Label lesson(const sim::EpisodeState& state, const core::Request& request) const;
+  Lesson lesson(const sim::EpisodeState& state, const core::Request& request) const;
   std::vector<Lesson> lessons(const sim::EpisodeState& state, bool moved) const;
   bool repeatsLast() const;
 

@@ -54,7 +54,7 @@ class EarlyFusion : public GoalPolicy {
 
   // A training step's, one row a sample.
   ViewBatch batch_;
-  nn::Matrix counts_, goals_, features_, activations_, logits_, targets_;
+  nn::Matrix counts_, goals_, features_, activations_, logits_, targets_, unlikelihoods_;
   nn::Matrix dlogits_, dactivations_, dfeatures_, dgoals_;
   Eigen::VectorXd sample_weights_;
   // Inference's: one row a sample, then one row a thread.

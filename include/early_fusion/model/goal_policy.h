@@ -30,6 +30,8 @@ struct Observation {
 struct Sample {
   Observation observation;
   std::array<float, core::kActionCount> target{};  ///< a distribution over actions; one-hot for a single label
+  /// Weights of the unlikelihood loss, nn::unlikelihoodLoss(), of what the policy must not do there.
+  std::array<float, core::kActionCount> unlikelihood{};
   float weight = 1.f;
 };
 

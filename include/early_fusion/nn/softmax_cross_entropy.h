@@ -14,4 +14,11 @@ void softmax(const float* logits, int classes, float* probabilities);
 double softmaxCrossEntropy(const Matrix& logits, const Matrix& targets, const Eigen::VectorXd& weights, int rows,
                            Matrix& dlogits);
 
+/// The unlikelihood loss (Welleck et al. 2020) of what must not be chosen: the weighted mean over rows of
+/// -sum_k u_k log(1 - p_k), p being the softmax of a row's logits.
+/// @param unlikelihoods (rows,classes), u >= 0. @param weights (rows), as above.
+/// @param dlogits (rows,classes), to which the loss's gradient is added.
+double unlikelihoodLoss(const Matrix& logits, const Matrix& unlikelihoods, const Eigen::VectorXd& weights, int rows,
+                        Matrix& dlogits);
+
 }  // namespace early_fusion::nn
