@@ -58,9 +58,19 @@ def taken(step):
     return next(entry["item"] for entry in step["scene"] if entry["instance"] == step["in_cone"][0])
 
 
+def collects(steps):
+    """The steps at which COLLECT takes something, and what."""
+    return [(step, taken(step)) for step in steps if taken(step) is not None]
+
+
+def way(step, none):
+    """Steps that collecting the nearest requested object costs; `none` where there is none to be reached."""
+    return min((cost["steps"] for cost in step["expert_costs"]), default=none)
+
+
 def distance(steps):
     """Steps from the start to the nearest requested object, by tens."""
-    nearest = min((cost["steps"] for cost in steps[0]["expert_costs"]), default=0)
+    nearest = way(steps[0], 0)
     low = 10 * (nearest // 10)
     return f"{low} to {low + 9} steps"
 
@@ -79,8 +89,7 @@ def collected_by(title, key, episodes):
     for steps in episodes:
         for item in steps[0]["request"]:
             requested[key(steps, item)] += 1
-        for step in steps:
-            item = taken(step)
+        for step, item in collects(steps):
             if item in step["request"]:
                 collected[key(steps, item)] += 1
     table(title, ["", "requested", "collected"],
@@ -90,20 +99,16 @@ def collected_by(title, key, episodes):
 def mistakes(episodes):
     wrong = collections.Counter()
     for steps in episodes:
-        for step in steps:
-            item = taken(step)
-            if item is not None and item not in step["request"]:
+        for step, item in collects(steps):
+            if item not in step["request"]:
                 wrong[item, ", ".join(step["request"]) or "nothing"] += 1
     table("Collected by mistake", ["collected", "requested", "times"],
           [[item, request, count] for (item, request), count in wrong.most_common(10)])
 
 
-def score(steps):
-    """(collected and requested, collected, requested, F1)"""
-    items = [(taken(step), step["request"]) for step in steps if taken(step) is not None]
-    right = sum(item in request for item, request in items)
-    requested = len(steps[0]["request"])
-    return right, len(items), requested, 2 * right / (len(items) + requested)
+def f1_score(steps):
+    right = sum(item in step["request"] for step, item in collects(steps))
+    return 2 * right / (len(collects(steps)) + len(steps[0]["request"]))
 
 
 def mistake(step):
@@ -113,7 +118,7 @@ def mistake(step):
     instances = {entry["instance"]: entry["item"] for entry in step["scene"]}
     if any(instances[instance] in step["request"] for instance in step["in_cone"]):
         return "collected what stands before a requested object in the cone"
-    if min((cost["steps"] for cost in step["expert_costs"]), default=LAST) <= NEAR:
+    if way(step, float("inf")) <= NEAR:
         return f"collected what stands beside a requested object, {NEAR - 1} moves from it or less"
     return "collected something else"
 
@@ -122,7 +127,7 @@ def ending(steps):
     """Why something requested is left at the end."""
     last = steps[-LAST:]
     places = {(step["pan_deg"], step["tilt_deg"]) for step in last}
-    if min((cost["steps"] for cost in steps[0]["expert_costs"]), default=0) > len(steps):
+    if way(steps[0], 0) > len(steps):
         return "out of reach: the expert needs more steps than there are, too"
     if not any(entry["exposure"] for entry in last[-1]["scene"] if entry["item"] in last[-1]["request"]):
         return "not collected: nothing but REMOVE makes way to it"
@@ -133,10 +138,10 @@ def ending(steps):
 
 def faults(steps):
     """Why an episode's F1 is less than 1: a cause for each mistake and for each requested object not collected."""
-    wrong = [mistake(step) for step in steps if taken(step) is not None and taken(step) not in step["request"]]
-    right, _, requested, _ = score(steps)
+    wrong = [mistake(step) for step, item in collects(steps) if item not in step["request"]]
+    right = len(collects(steps)) - len(wrong)
     left = len(steps[-1]["request"]) - (taken(steps[-1]) in steps[-1]["request"])
-    return wrong + ["removed a requested object"] * (requested - right - left) + [ending(steps)] * left
+    return wrong + ["removed a requested object"] * (len(steps[0]["request"]) - right - left) + [ending(steps)] * left
 
 
 def losses(episodes):
@@ -145,9 +150,9 @@ def losses(episodes):
         causes = faults(steps)
         for cause in causes:
             counts[cause] += 1
-            lost[cause] += (1 - score(steps)[-1]) / len(causes) / len(episodes)
+            lost[cause] += (1 - f1_score(steps)) / len(causes) / len(episodes)
             which[cause].append(steps[0]["episode"])
-    table(f"What F1 {sum(score(steps)[-1] for steps in episodes) / len(episodes):.3f} lacks of 1 (each episode's share "
+    table(f"What F1 {sum(f1_score(steps) for steps in episodes) / len(episodes):.3f} lacks of 1 (each episode's share "
           "divided equally among what went wrong in it)",
           ["cause", "F1 lost", "times", "episodes"],
           [[cause, f"{loss:.4f}", counts[cause],

@@ -6,6 +6,23 @@
 
 namespace early_fusion::nn {
 
+namespace {
+
+/// log sum_k exp(logits(row, k)), over all classes but `without`.
+double logSumExp(const Matrix& logits, int row, Eigen::Index without = -1) {
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < logits.cols(); ++k) {
+    if (k != without) greatest = std::max<double>(greatest, logits(row, k));
+  }
+  double sum = 0;
+  for (Eigen::Index k = 0; k < logits.cols(); ++k) {
+    if (k != without) sum += std::exp(logits(row, k) - greatest);
+  }
+  return greatest + std::log(sum);
+}
+
+}  // namespace
+
 void softmax(const float* logits, int classes, float* probabilities) {
   const float greatest = *std::max_element(logits, logits + classes);
   double sum = 0;
@@ -21,10 +38,7 @@ double softmaxCrossEntropy(const Matrix& logits, const Matrix& targets, const Ei
   const Eigen::Index classes = logits.cols();
   double loss = 0;
   for (int i = 0; i < rows; ++i) {
-    const double greatest = logits.row(i).maxCoeff();
-    double sum = 0;
-    for (Eigen::Index k = 0; k < classes; ++k) sum += std::exp(logits(i, k) - greatest);
-    const double log_sum = greatest + std::log(sum);
+    const double log_sum = logSumExp(logits, i);
     const double weight = weights[i] / weight_sum;
     const double target_sum = targets.row(i).cast<double>().sum();
     for (Eigen::Index k = 0; k < classes; ++k) {
@@ -44,16 +58,8 @@ double unlikelihoodLoss(const Matrix& logits, const Matrix& unlikelihoods, const
   for (int i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < classes; ++k) {
       if (unlikelihoods(i, k) == 0) continue;
-      double greatest_other = -std::numeric_limits<double>::infinity();
-      for (Eigen::Index j = 0; j < classes; ++j) {
-        if (j != k) greatest_other = std::max<double>(greatest_other, logits(i, j));
-      }
-      double sum = 0;
-      for (Eigen::Index j = 0; j < classes; ++j) {
-        if (j != k) sum += std::exp(logits(i, j) - greatest_other);
-      }
       // 1 - p_k = 1 / (1 + exp(odds)), which doesn't cancel where p_k is next to 1.
-      const double others = greatest_other + std::log(sum);
+      const double others = logSumExp(logits, i, k);
       const double odds = logits(i, k) - others;
       const double weight = weights[i] / weight_sum * unlikelihoods(i, k);
       loss += weight * (std::max(odds, 0.) + std::log1p(std::exp(-std::abs(odds))));

@@ -158,7 +158,8 @@ TEST(GoalPolicy, InBfloat16PredictsAndLearnsAlmostTheSame) {
   PolicyOptions options = smallOptions();
   options.dropout = 0;
   const auto full = makeSmall(options);
-  const TestBatch batch(32, 32, kItems, 3);
+  TestBatch batch(32, 32, kItems, 3);
+  for (Sample& sample : batch.samples) sample.unlikelihood.fill(0);
   train(*full, batch, 20);
   const auto half = loadPolicy(savePolicy(*full, {}), "memory", "bf16");
   Probabilities expected, found;
@@ -168,7 +169,7 @@ TEST(GoalPolicy, InBfloat16PredictsAndLearnsAlmostTheSame) {
   EXPECT_NEAR(full->lossAndGradients(batch.samples, 0), half->lossAndGradients(batch.samples, 0), 0.02);
   const Eigen::VectorXf& a = full->parameters().gradients();
   const Eigen::VectorXf& b = half->parameters().gradients();
-  EXPECT_GT(a.dot(b), 0.95f * a.norm() * b.norm());
+  EXPECT_GT(a.dot(b), 0.97f * a.norm() * b.norm());
   EXPECT_NEAR(b.norm() / a.norm(), 1, 0.1);
 }
 

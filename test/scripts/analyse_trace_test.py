@@ -66,7 +66,7 @@ class Trace(unittest.TestCase):
             self.assertEqual(len(episodes), 12)
             self.assertLess(sum(expected), 12)
             for steps, f1 in zip(episodes, expected):
-                self.assertAlmostEqual(analyse_trace.score(steps)[-1], f1)
+                self.assertAlmostEqual(analyse_trace.f1_score(steps), f1)
                 self.assertEqual(f1 < 1, bool(analyse_trace.faults(steps)))
             tables = subprocess.run([os.path.join(SOURCE, "scripts/analyse_trace.py"), trace], check=True,
                                     stdout=subprocess.PIPE, universal_newlines=True).stdout
