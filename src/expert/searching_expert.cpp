@@ -11,6 +11,7 @@ using core::Action;
 
 constexpr int kViewSteps = 13;  // 26 degrees: well inside a picture of 60
 constexpr int kTurnSteps = 16;  // 32 degrees before the last pan, objects have come into view far enough to go on
+constexpr std::size_t kOccluderSize = 60;  // orientations: some 9 by 9 degrees, and the cone's 3 all round
 
 Action search(const sim::OrientationLattice& lattice, sim::Orientation orientation, Heading heading) {
   if (heading == Heading::kNone) heading = orientation.pan > 0 ? Heading::kRight : Heading::kLeft;
@@ -20,6 +21,11 @@ Action search(const sim::OrientationLattice& lattice, sim::Orientation orientati
   if (orientation.tilt > lattice.lowest.tilt + kViewSteps) return Action::kTiltUp;
   if (orientation.tilt < lattice.highest.tilt - kViewSteps) return Action::kTiltDown;
   return heading == Heading::kLeft ? Action::kPanRight : Action::kPanLeft;
+}
+
+/// Whether an instance is so large, as seen from the camera, that another may be hidden behind it.
+bool isOccluder(const sim::ConeTable& cone, int instance) {
+  return cone.orientationsOf(instance).size() >= kOccluderSize;
 }
 
 }  // namespace
@@ -40,7 +46,9 @@ Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance
     if ((wanted & instance) && isInView(cone, static_cast<int>(i), orientation)) in_view |= instance;
   }
   if (wanted == 0 || in_view != 0) return labelFor(cone, in_view, present, orientation);
-  const Action action = search(cone.lattice(), orientation, heading);
+  const int nearest = cone.nearest(orientation, present);
+  const bool clear = nearest >= 0 && isOccluder(cone, nearest);
+  const Action action = clear ? Action::kRemove : search(cone.lattice(), orientation, heading);
   return {action, bit(action), 0};
 }
 

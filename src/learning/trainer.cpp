@@ -34,7 +34,7 @@ core::OptionSet TrainingOptions::options() {
           "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");
   set.add("unlikelihood", unlikelihood, 0, 1000, "",
           "weight of the unlikelihood loss of what does harm: to COLLECT what is not requested, to REMOVE what is, and "
-          "to COLLECT again where it has just changed nothing");
+          "either where nothing is in the cone and nothing has moved");
   set.add("balance", balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
   set.addChoice("exploration", exploration, model::actionChoiceNames(), "how rollouts choose among the probabilities");
   set.add("weight_decay", weight_decay, 0, 1, "", "of Adam, decoupled");
@@ -141,24 +141,25 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
     observation.frames[age] = trajectory.steps[index.step - age].frame->data();
   }
   const TrajectoryStep& step = trajectory.steps[index.step];
+  const bool nothing_in_cone = step.nearest_item < 0;
   const auto add = [&](const Lesson& lesson) {
     model::Sample sample;
     sample.observation = observation;
     sample.observation.request = &lesson.request;
     sample.weight = action_weights_[static_cast<int>(lesson.label.action)];
     sample.target = target(lesson.label);
-    expert::ActionSet harmful = lesson.harmful;
-    if (step.out_of_reach && observation.frames[0] == observation.frames[1])
-      harmful |= expert::bit(core::Action::kCollect);
-    for (core::Action action : core::kAllActions) {
-      if (expert::contains(harmful, action))
-        sample.unlikelihood[static_cast<int>(action)] = float(options_.unlikelihood);
-    }
+    const bool nothing_moved = observation.frames[0] == observation.frames[1];
+    const bool requested = std::count(lesson.request.begin(), lesson.request.end(), step.nearest_item) > 0;
+    const auto avoid = [&](core::Action action) {
+      sample.unlikelihood[static_cast<int>(action)] = float(options_.unlikelihood);
+    };
+    if (nothing_in_cone ? nothing_moved : !requested) avoid(core::Action::kCollect);
+    if (nothing_in_cone ? nothing_moved : requested) avoid(core::Action::kRemove);
     batch.push_back(sample);
   };
   for (std::size_t i = 0; i < lessonCount(step); ++i) add(step.lessons[i]);
   const std::uint8_t *now = observation.frames[0], *before = observation.frames[1];
-  if (!options_.vain_collects || !step.out_of_reach || now == before) return;
+  if (!options_.vain_collects || !nothing_in_cone || now == before) return;
   // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
   observation.frames = {now, now, index.step % 2 == 1 ? now : before};
   for (std::size_t i = 0; i < lessonCount(step); ++i) {

@@ -39,7 +39,8 @@ const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state,
   step.request = state.request;
   step.action = core::Action::kIdle;
   step.label = expert::label(*cone_, instances_, state.present, state.orientation, state.request);
-  step.out_of_reach = cone_->nearest(state.orientation, state.present) < 0;
+  const int nearest = cone_->nearest(state.orientation, state.present);
+  step.nearest_item = nearest < 0 ? -1 : instances_[nearest].item;
   if (latest_pan_.size() == model::kHistory) latest_pan_.erase(latest_pan_.begin());
   latest_pan_.push_back(state.orientation.pan);
   step.lessons = lessons(state, moved);
@@ -69,11 +70,6 @@ Lesson TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Re
   lesson.label = teacher_ == Teacher::kGreedy
                      ? expert::label(*cone_, instances_, state.present, state.orientation, request)
                      : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
-  const int nearest = cone_->nearest(state.orientation, state.present);
-  if (nearest >= 0) {
-    const bool requested = std::find(request.begin(), request.end(), instances_[nearest].item) != request.end();
-    lesson.harmful = expert::bit(requested ? core::Action::kRemove : core::Action::kCollect);
-  }
   return lesson;
 }
 

@@ -19,36 +19,58 @@ const sim::World& world() {
   return *world;
 }
 
-/// An object far to the left and one far to the right.
-const std::vector<sim::Instance> kApart = {{0, 0.75, 0.5, 0}, {1, 0.75, -0.5, 0}};
+const core::Vocabulary& vocabulary() { return world().objects.vocabulary(); }
 
-Action atApart(Orientation orientation, Heading heading, const core::Request& request) {
-  static const sim::ConeTable cone(world(), kApart);
-  return searchingLabel(cone, kApart, 0b11, orientation, heading, request).action;
+constexpr char kFarLeft[] = "peach", kFarRight[] = "rubiks_cube";
+
+/// What the expert does in a scene with these two.
+Action atApart(Orientation orientation, Heading heading, const std::vector<std::string>& request) {
+  static const std::vector<sim::Instance> instances = {{vocabulary().index(kFarLeft), 0.75, 0.5, 0},
+                                                       {vocabulary().index(kFarRight), 0.75, -0.5, 0}};
+  static const sim::ConeTable cone(world(), instances);
+  return searchingLabel(cone, instances, 0b11, orientation, heading, vocabulary().request(request)).action;
 }
 
 TEST(SearchingExpert, KeepsToItsHeadingUntilTheViewHoldsThatSide) {
-  EXPECT_EQ(atApart({5, 12}, Heading::kLeft, {1}), Action::kPanLeft);
-  EXPECT_EQ(atApart({5, 12}, Heading::kRight, {1}), Action::kPanRight);
-  EXPECT_EQ(atApart({-5, 12}, Heading::kRight, {0}), Action::kPanRight);
-  EXPECT_EQ(atApart({24, 12}, Heading::kLeft, {1}), Action::kPanRight);
-  EXPECT_EQ(atApart({-24, 12}, Heading::kRight, {0}), Action::kPanLeft);
+  EXPECT_EQ(atApart({5, 12}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
+  EXPECT_EQ(atApart({5, 12}, Heading::kRight, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-5, 12}, Heading::kRight, {kFarLeft}), Action::kPanRight);
+  EXPECT_EQ(atApart({24, 12}, Heading::kLeft, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-24, 12}, Heading::kRight, {kFarLeft}), Action::kPanLeft);
 }
 
 TEST(SearchingExpert, StartsAcrossTheMiddle) {
-  EXPECT_EQ(atApart({6, 12}, Heading::kNone, {1}), Action::kPanRight);
-  EXPECT_EQ(atApart({-6, 12}, Heading::kNone, {0}), Action::kPanLeft);
+  EXPECT_EQ(atApart({6, 12}, Heading::kNone, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-6, 12}, Heading::kNone, {kFarLeft}), Action::kPanLeft);
 }
 
 TEST(SearchingExpert, TiltsBeforeItTurnsWhereFrontOrBackIsOutOfView) {
-  EXPECT_EQ(atApart({24, 22}, Heading::kLeft, {1}), Action::kTiltUp);
-  EXPECT_EQ(atApart({24, 1}, Heading::kLeft, {1}), Action::kTiltDown);
-  EXPECT_EQ(atApart({0, 1}, Heading::kLeft, {1}), Action::kPanLeft);
+  EXPECT_EQ(atApart({24, 22}, Heading::kLeft, {kFarRight}), Action::kTiltUp);
+  EXPECT_EQ(atApart({24, 1}, Heading::kLeft, {kFarRight}), Action::kTiltDown);
+  EXPECT_EQ(atApart({0, 1}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
+}
+
+TEST(SearchingExpert, RemovesOnTheWayWhatIsLargeEnoughToHideSomething) {
+  for (const auto& [name, is_removed] : {std::pair("cracker_box", true), std::pair("peach", false)}) {
+    const std::vector<sim::Instance> instances = {{vocabulary().index(name), 0.65, -0.3, 0},
+                                                  {vocabulary().index("mug"), 0.75, 0.5, 0}};
+    const sim::ConeTable cone(world(), instances);
+    const std::vector<Orientation>& ahead = cone.orientationsOf(0);
+    const Orientation at_it = ahead[ahead.size() / 2];
+    ASSERT_FALSE(isInView(cone, 1, at_it));
+    const auto action = [&](sim::InstanceMask present, const std::string& requested) {
+      return searchingLabel(cone, instances, present, at_it, Heading::kLeft, vocabulary().request({requested})).action;
+    };
+    EXPECT_EQ(action(0b11, "mug"), is_removed ? Action::kRemove : Action::kPanLeft) << name;
+    EXPECT_EQ(action(0b10, "mug"), Action::kPanLeft) << "it is gone";
+    EXPECT_EQ(action(0b11, name), Action::kCollect) << name;
+    EXPECT_EQ(action(0b01, "mug"), Action::kIdle) << "nothing is left to look for";
+  }
 }
 
 TEST(SearchingExpert, IdlesWhenNothingRequestedIsThere) {
   EXPECT_EQ(atApart({0, 12}, Heading::kLeft, {}), Action::kIdle);
-  EXPECT_EQ(atApart({0, 12}, Heading::kLeft, {5}), Action::kIdle);
+  EXPECT_EQ(atApart({0, 12}, Heading::kLeft, {"mug"}), Action::kIdle);
 }
 
 TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
@@ -78,7 +100,12 @@ TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
         EXPECT_EQ(left.action, right.action);
       } else {
         const bool turns = std::abs(state.orientation.pan) >= 10;  // with one of the headings
-        EXPECT_EQ(left.action == right.action, turns && state.orientation.tilt >= 9 && state.orientation.tilt <= 14);
+        if (left.action == Action::kRemove) {
+          EXPECT_EQ(right.action, Action::kRemove);
+          EXPECT_GE(episode.cone().nearest(state.orientation, state.present), 0);
+        } else {
+          EXPECT_EQ(left.action == right.action, turns && state.orientation.tilt >= 9 && state.orientation.tilt <= 14);
+        }
         EXPECT_EQ(left.optimal, 1u << static_cast<int>(left.action));
         EXPECT_EQ(left.steps, 0);
       }

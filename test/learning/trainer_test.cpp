@@ -215,9 +215,9 @@ double panAfterVainCollects(bool vain_collects) {
     while (!trainer->roundDue()) {
       Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
       for (TrajectoryStep& step : trajectory.steps) {
-        step.out_of_reach = step.action < core::Action::kCollect;
+        step.nearest_item = step.action < core::Action::kCollect ? -1 : 0;
         step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}};
-        if (step.out_of_reach) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
+        if (step.nearest_item < 0) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
       }
       trainer->add(std::move(trajectory));
     }
@@ -246,26 +246,27 @@ TEST(Trainer, LearnsNotToRepeatACollectThatChangedNothing) {
   EXPECT_LT(panAfterVainCollects(false), 0.75);
 }
 
-/// Trains where, at random, four of seven frames ask for COLLECT, and at the others it does harm: it would take
-/// something else, or, where the camera is at rest, it has just been in vain.
-/// @return the mean probability of COLLECT.
-double collectWhereItMayDoHarm(double unlikelihood, bool at_rest) {
+/// Trains where, at random, four of seven frames ask for an action, COLLECT or REMOVE, and at the others it does harm:
+/// it would take the wrong thing, or, where the camera is at rest, it has just been in vain.
+/// @return the action's mean probability.
+double probabilityWhereItMayDoHarm(core::Action action, double unlikelihood, bool at_rest) {
   TrainingOptions options = tinyTraining();
   options.trajectories = 400;
   options.requests_per_frame = 1;
   options.unlikelihood = unlikelihood;
   const auto trainer = makeTrainer(options);
   const core::Request request = {0};
+  const int right_item = action == core::Action::kCollect ? 0 : 1, wrong_item = 1 - right_item;
   while (!trainer->finished()) {
     while (!trainer->roundDue()) {
       Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
       for (TrajectoryStep& step : trajectory.steps) {
         if (at_rest) step.frame = trajectory.steps.front().frame;
         const bool harm = step.action >= core::Action::kCollect;
-        step.out_of_reach = harm && at_rest;
-        Lesson lesson{request, {core::Action::kCollect, 1 << 4, 1}};
-        if (harm) lesson = {request, {core::Action::kPanLeft, 1 << 0, 2}, expert::ActionSet(at_rest ? 0 : 1 << 4)};
-        step.lessons = {lesson};
+        step.nearest_item = right_item;
+        if (harm) step.nearest_item = at_rest ? -1 : wrong_item;
+        step.lessons = {{request, {action, expert::bit(action), 1}}};
+        if (harm) step.lessons = {{request, {core::Action::kPanLeft, 1 << 0, 2}}};
       }
       trainer->add(std::move(trajectory));
     }
@@ -281,15 +282,18 @@ double collectWhereItMayDoHarm(double unlikelihood, bool at_rest) {
     observation.request = &request;
     model::Probabilities probabilities;
     trainer->policy().predict({observation}, probabilities);
-    sum += probabilities(0, static_cast<int>(core::Action::kCollect));
+    sum += probabilities(0, static_cast<int>(action));
   }
   return sum / 40;
 }
 
 TEST(Trainer, UnlikelihoodKeepsThePolicyFromWhatMayDoHarm) {
-  for (const bool at_rest : {false, true}) {
-    EXPECT_GT(collectWhereItMayDoHarm(0, at_rest), 0.45) << "at rest: " << at_rest;  // 4 / 7
-    EXPECT_LT(collectWhereItMayDoHarm(6, at_rest), 0.3) << "at rest: " << at_rest;   // 4 / (4 + 7 * 3)
+  for (const core::Action action : {core::Action::kCollect, core::Action::kRemove}) {
+    for (const bool at_rest : {false, true}) {
+      SCOPED_TRACE(core::actionName(action) + std::string(at_rest ? ", at rest" : ""));
+      EXPECT_GT(probabilityWhereItMayDoHarm(action, 0, at_rest), 0.45);  // 4 / 7
+      EXPECT_LT(probabilityWhereItMayDoHarm(action, 6, at_rest), 0.3);   // 4 / (4 + 7 * 3)
+    }
   }
 }
 

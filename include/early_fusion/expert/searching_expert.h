@@ -14,9 +14,10 @@ bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orienta
 /// looks for the others.
 ///
 /// While none is in view it keeps to `heading`, or without one pans across the middle; where the view holds everything
-/// to that side, it turns round, after tilting so far that the view holds the counter's front and back. So every label
-/// is a function of the last few pictures. The greedy expert's way to what nobody can see is not: a policy that
-/// imitates it learns to turn to and fro wherever the next unseen object is as likely on either side.
+/// to that side, it turns round, after tilting so far that the view holds the counter's front and back. Whatever in the
+/// cone is large enough to hide what it looks for, it removes. So every label is a function of the last few pictures.
+/// The greedy expert's way to what nobody can see is not: a policy that imitates it learns to turn to and fro wherever
+/// the next unseen object is as likely on either side.
 ///
 /// @param heading of the camera over the pictures that the policy sees.
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,

@@ -16,7 +16,6 @@ namespace early_fusion::learning {
 struct Lesson {
   core::Request request;
   expert::Label label;
-  expert::ActionSet harmful = 0;  ///< COLLECT where it would take something else, REMOVE where it would take this
 };
 
 /// For how many requests a frame is labelled, the policy's own among them, if the scene has so many.
@@ -30,7 +29,7 @@ struct TrajectoryStep {
   core::Action action;          ///< what it did
   expert::Label label;          ///< what the expert that sees everything would have done
   std::vector<Lesson> lessons;  ///< the teacher's: for that request, then for others, at most kRequestsPerFrame
-  bool out_of_reach = false;    ///< nothing is in the cone: COLLECT and REMOVE do nothing
+  int nearest_item = -1;        ///< what COLLECT or REMOVE would take; -1 where nothing is in the cone
   bool repeats = false;         ///< the policy saw frames and request of the step before once more
 };
 
