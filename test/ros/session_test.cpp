@@ -207,7 +207,12 @@ TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
 TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
   const auto demo = launch("demo.launch", {"weights:=" + files_->path("reference/weights.safetensors"),
                                            "task:=" + files_->task(), "world:=" + files_->world(), "rate:=20"});
-  const auto record = launch("record.launch", {"bag:=" + files_->path("demo.bag"), "duration:=4"});
+  const auto record = launch("record.launch", {"bag:=" + files_->path("demo.bag")});
+  // rosbag subscribes, and then opens its file.
+  ASSERT_TRUE(waitFor([&] { return fs::exists(files_->path("demo.bag.active")); }, kSessionSec)) << record->output();
+  ChildProcess episodes({"rostopic", "echo", "-n", "3", "episode"}, environment_, files_->path("episodes.log"));
+  ASSERT_TRUE(episodes.ends(kSessionSec)) << episodes.output();
+  record->signal(SIGINT);
   ASSERT_TRUE(record->ends(kSessionSec)) << record->output();
   ChildProcess info({"rosbag", "info", files_->path("demo.bag")}, environment_, files_->path("info.log"));
   ASSERT_TRUE(info.ends(60));
@@ -217,8 +222,10 @@ TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
         " episode ", " joint_states ", " markers ", " policy_status ", " /tf ", " /tf_static "}) {
     EXPECT_NE(info.output().find(topic), std::string::npos) << topic << "is not in\n" << info.output();
   }
+  const auto timed = launch("record.launch", {"bag:=" + files_->path("timed.bag"), "duration:=1"});
+  EXPECT_TRUE(timed->ends(kSessionSec)) << timed->output();
   const auto view = launch("view.launch", {"bag:=" + files_->path("demo.bag"), "rviz:=false", "speed:=4"});
-  ASSERT_TRUE(view->ends(30)) << view->output();
+  ASSERT_TRUE(view->ends(kSessionSec)) << view->output();
   // roslaunch's number for a node depends on whether it started the master too.
   EXPECT_TRUE(std::regex_search(view->output(), std::regex(R"(\[play-\d+\] has died!\nprocess has finished cleanly)")))
       << view->output();
