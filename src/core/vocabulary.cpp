@@ -8,6 +8,10 @@
 
 namespace early_fusion::core {
 
+int countOf(const Request& request, int item) {
+  return static_cast<int>(std::count(request.begin(), request.end(), item));
+}
+
 Vocabulary::Vocabulary(std::vector<std::string> names) : names_(std::move(names)) {
   std::set<std::string> seen;
   for (const std::string& name : names_) {

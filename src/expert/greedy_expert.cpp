@@ -77,9 +77,7 @@ sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, s
                                   const core::Request& request) {
   sim::InstanceMask wanted = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (std::find(request.begin(), request.end(), instances[i].item) != request.end()) {
-      wanted |= sim::InstanceMask(1) << i;
-    }
+    if (core::countOf(request, instances[i].item) > 0) wanted |= sim::InstanceMask(1) << i;
   }
   return wanted & present;
 }

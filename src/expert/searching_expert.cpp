@@ -14,7 +14,10 @@ constexpr int kTurnSteps = 16;  // 32 degrees before the last pan, objects have 
 constexpr std::size_t kOccluderSize = 60;  // orientations: some 9 by 9 degrees, and the cone's 3 all round
 
 Action search(const sim::OrientationLattice& lattice, sim::Orientation orientation, Heading heading) {
-  if (heading == Heading::kNone) heading = orientation.pan > 0 ? Heading::kRight : Heading::kLeft;
+  const Heading nearer_end = orientation.pan > 0 ? Heading::kLeft : Heading::kRight;
+  const Heading farther_end = orientation.pan > 0 ? Heading::kRight : Heading::kLeft;
+  if (heading == Heading::kStart) heading = nearer_end;
+  if (heading == Heading::kNone) heading = farther_end;
   const int leftmost = lattice.highest.pan - kTurnSteps, rightmost = lattice.lowest.pan + kTurnSteps;
   const bool all_seen = heading == Heading::kLeft ? orientation.pan >= leftmost : orientation.pan <= rightmost;
   if (!all_seen) return heading == Heading::kLeft ? Action::kPanLeft : Action::kPanRight;

@@ -149,7 +149,7 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
     sample.weight = action_weights_[static_cast<int>(lesson.label.action)];
     sample.target = target(lesson.label);
     const bool nothing_moved = observation.frames[0] == observation.frames[1];
-    const bool requested = std::count(lesson.request.begin(), lesson.request.end(), step.nearest_item) > 0;
+    const bool requested = core::countOf(lesson.request, step.nearest_item) > 0;
     const auto avoid = [&](core::Action action) {
       sample.unlikelihood[static_cast<int>(action)] = float(options_.unlikelihood);
     };

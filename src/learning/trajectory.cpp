@@ -78,7 +78,7 @@ expert::Heading TrajectoryRecorder::heading() const {
     if (latest_pan_[i] > latest_pan_[i - 1]) return expert::Heading::kLeft;
     if (latest_pan_[i] < latest_pan_[i - 1]) return expert::Heading::kRight;
   }
-  return expert::Heading::kNone;
+  return latest_pan_.size() < model::kHistory ? expert::Heading::kStart : expert::Heading::kNone;
 }
 
 /// Lessons for the policy's own request, and for requests that this scene could have had: each 1 to requested_ of the

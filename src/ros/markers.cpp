@@ -1,6 +1,5 @@
 #include "early_fusion/ros/markers.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "early_fusion/core/file.h"
@@ -77,7 +76,7 @@ visualization_msgs::MarkerArray objectMarkers(const sim::World& world, const sim
     const Eigen::Isometry3d world_from_object = sim::worldFromObject(world, instances[i]);
     array.markers.push_back(meshMarker(object, world_from_object));
     array.markers.back().id = static_cast<int>(i);
-    if (std::find(request.begin(), request.end(), instances[i].item) == request.end()) continue;
+    if (core::countOf(request, instances[i].item) == 0) continue;
     array.markers.push_back(nameMarker(object, world_from_object));
     array.markers.back().id = static_cast<int>(i);
   }

@@ -9,10 +9,6 @@ namespace {
 
 InstanceMask allOf(std::size_t count) { return count >= 32 ? ~InstanceMask{0} : (InstanceMask{1} << count) - 1; }
 
-int countOf(const core::Request& request, int item) {
-  return static_cast<int>(std::count(request.begin(), request.end(), item));
-}
-
 }  // namespace
 
 Episode::Episode(const World& world, const Task& task, EpisodeSetup setup)
@@ -57,7 +53,7 @@ void Episode::updateRequest() {
   }
   state_.request.clear();
   for (int item : outstanding_) {
-    if (countOf(state_.request, item) < countOf(left, item)) state_.request.push_back(item);
+    if (core::countOf(state_.request, item) < core::countOf(left, item)) state_.request.push_back(item);
   }
 }
 

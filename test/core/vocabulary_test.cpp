@@ -13,6 +13,13 @@ TEST(Vocabulary, RequestsAreSortedAndKeepRepetitions) {
   EXPECT_EQ(vocabulary.names(Request{0, 2, 2}), (std::vector<std::string>{"mug", "plate", "plate"}));
 }
 
+TEST(Vocabulary, ARequestIsCountedByItem) {
+  const Request request{0, 2, 2};
+  EXPECT_EQ(countOf(request, 2), 2);
+  EXPECT_EQ(countOf(request, 1), 0);
+  EXPECT_EQ(countOf(request, -1), 0);
+}
+
 TEST(Vocabulary, UnknownItemIsAnErrorThatListsTheKnown) {
   try {
     Vocabulary({"mug", "bowl"}).index("cup");

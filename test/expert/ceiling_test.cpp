@@ -41,7 +41,7 @@ void countInstances(const sim::World& world, const sim::Episode& episode, Statis
   for (std::size_t i = 0; i < setup.instances.size(); ++i) {
     const auto& orientations = episode.cone().orientationsOf(static_cast<int>(i));
     statistics.unreachable += orientations.empty();
-    if (std::find(setup.request.begin(), setup.request.end(), setup.instances[i].item) == setup.request.end()) continue;
+    if (core::countOf(setup.request, setup.instances[i].item) == 0) continue;
     ++statistics.wanted;
     statistics.out_of_view += !inView(world, setup.instances[i], setup.orientation);
     statistics.occluded += std::any_of(orientations.begin(), orientations.end(),

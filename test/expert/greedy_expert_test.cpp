@@ -115,8 +115,7 @@ State randomState(const Scene& scene, core::Random& random) {
 }
 
 bool isWanted(const Scene& scene, std::size_t i, const State& state, const core::Request& request) {
-  return ((state.present >> i) & 1u) &&
-         std::find(request.begin(), request.end(), scene.instances[i].item) != request.end();
+  return ((state.present >> i) & 1u) && core::countOf(request, scene.instances[i].item) > 0;
 }
 
 TEST(GreedyExpert, CountsTheStepsThatASearchOverAllStatesFinds) {

@@ -39,7 +39,13 @@ TEST(SearchingExpert, KeepsToItsHeadingUntilTheViewHoldsThatSide) {
   EXPECT_EQ(atApart({-24, 12}, Heading::kRight, {kFarLeft}), Action::kPanLeft);
 }
 
-TEST(SearchingExpert, StartsAcrossTheMiddle) {
+TEST(SearchingExpert, StartsWithTheNearerEnd) {
+  EXPECT_EQ(atApart({6, 12}, Heading::kStart, {kFarRight}), Action::kPanLeft);
+  EXPECT_EQ(atApart({-6, 12}, Heading::kStart, {kFarLeft}), Action::kPanRight);
+  EXPECT_EQ(atApart({12, 12}, Heading::kStart, {kFarRight}), Action::kPanRight) << "the view holds that end already";
+}
+
+TEST(SearchingExpert, GoesAcrossTheMiddleWithoutAHeading) {
   EXPECT_EQ(atApart({6, 12}, Heading::kNone, {kFarRight}), Action::kPanRight);
   EXPECT_EQ(atApart({-6, 12}, Heading::kNone, {kFarLeft}), Action::kPanLeft);
 }
@@ -147,7 +153,7 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
   double f1 = 0;
   for (int number = 0; number < kEpisodes; ++number) {
     sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 5, number));
-    Heading heading = Heading::kNone;
+    Heading heading = Heading::kStart;
     while (!episode.finished()) {
       const sim::EpisodeState state = episode.state();
       episode.step(searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation, heading,

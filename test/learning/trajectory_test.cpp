@@ -67,7 +67,7 @@ TEST_F(TrajectoryRecorderTest, LessonsAskForWhatIsThereAndHaveTheExpertsLabel) {
         for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
           there += ((state.present >> i) & 1) && episode.setup().instances[i].item == item;
         }
-        EXPECT_LE(std::count(request.begin(), request.end(), item), there);
+        EXPECT_LE(core::countOf(request, item), there);
       }
       EXPECT_EQ(
           lesson->label.action,
@@ -88,7 +88,7 @@ TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCom
   using core::Action;
   using expert::Heading;
   const std::vector<std::pair<Action, Heading>> moves = {
-      {Action::kPanLeft, Heading::kNone},  {Action::kTiltUp, Heading::kLeft},  {Action::kTiltUp, Heading::kLeft},
+      {Action::kPanLeft, Heading::kStart}, {Action::kTiltUp, Heading::kLeft},  {Action::kTiltUp, Heading::kLeft},
       {Action::kPanRight, Heading::kNone}, {Action::kIdle, Heading::kRight},   {Action::kPanLeft, Heading::kRight},
       {Action::kIdle, Heading::kLeft},     {Action::kCollect, Heading::kLeft}, {Action::kIdle, Heading::kNone}};
   int searched = 0;
@@ -124,7 +124,7 @@ TEST_F(TrajectoryRecorderTest, TheTeacherCollectsNothingThatIsNotRequestedAndRem
         ++nothing;
         continue;
       }
-      const bool requested = std::count(lesson.request.begin(), lesson.request.end(), step.nearest_item) > 0;
+      const bool requested = core::countOf(lesson.request, step.nearest_item) > 0;
       ++(requested ? removes : collects);
       EXPECT_FALSE(expert::contains(lesson.label.optimal, requested ? core::Action::kRemove : core::Action::kCollect))
           << "the teacher does harm";

@@ -78,7 +78,7 @@ TEST(Scene, RequestsASubsetOfTheInstances) {
     ASSERT_EQ(setup.request.size(), 3u);
     EXPECT_TRUE(std::is_sorted(setup.request.begin(), setup.request.end()));
     for (int item : setup.request) {
-      const auto requested = std::count(setup.request.begin(), setup.request.end(), item);
+      const int requested = core::countOf(setup.request, item);
       EXPECT_LE(requested, std::count_if(setup.instances.begin(), setup.instances.end(),
                                          [&](const Instance& instance) { return instance.item == item; }));
       twice |= requested > 1;

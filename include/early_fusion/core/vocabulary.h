@@ -8,6 +8,9 @@ namespace early_fusion::core {
 /// What is still to be collected: item indices into a Vocabulary, ascending; an item requested twice stands twice.
 using Request = std::vector<int>;
 
+/// How often `request` has `item`.
+int countOf(const Request& request, int item);
+
 /// The item names that an object set or a trained policy knows, in the order of their indices.
 class Vocabulary {
  public:

@@ -4,8 +4,8 @@
 
 namespace early_fusion::expert {
 
-/// Which way the camera was last panned.
-enum class Heading { kNone, kLeft, kRight };
+/// Which way the camera was last panned: not at all since the episode began, not in the last few pictures, left, right.
+enum class Heading { kStart, kNone, kLeft, kRight };
 
 /// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.
 bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation);
@@ -13,8 +13,9 @@ bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orienta
 /// An expert that knows no more than a policy can: it goes greedily for the requested instances that are in view, and
 /// looks for the others.
 ///
-/// While none is in view it keeps to `heading`, or without one pans across the middle; where the view holds everything
-/// to that side, it turns round, after tilting so far that the view holds the counter's front and back. Whatever in the
+/// While none is in view it keeps to `heading`; where the view holds everything to that side, it turns round, after
+/// tilting so far that the view holds the counter's front and back. It starts with the nearer end, which is soon seen,
+/// and where it has no heading later, pans across the middle, away from where it most likely came from. Whatever in the
 /// cone is large enough to hide what it looks for, it removes. So every label is a function of the last few pictures.
 /// The greedy expert's way to what nobody can see is not: a policy that imitates it learns to turn to and fro wherever
 /// the next unseen object is as likely on either side.

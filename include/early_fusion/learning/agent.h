@@ -18,10 +18,10 @@ namespace early_fusion::learning {
 /// One episode as an agent meets it at a step. Nothing is owned.
 struct Situation {
   std::uint64_t episode = 0;
-  const sim::Episode* state = nullptr;               ///< for agents that may see the simulator's state
-  model::Observation observation;                    ///< for those that may not
-  bool repeats = false;                              ///< observation is that of the episode's step before
-  expert::Heading heading = expert::Heading::kNone;  ///< over the observation's frames
+  const sim::Episode* state = nullptr;                ///< for agents that may see the simulator's state
+  model::Observation observation;                     ///< for those that may not
+  bool repeats = false;                               ///< observation is that of the episode's step before
+  expert::Heading heading = expert::Heading::kStart;  ///< over the observation's frames
 };
 
 /// Decides what to do, in several episodes at once.
