@@ -20,6 +20,7 @@ SHOWN = 8  # episodes of a kind that are named
 
 def read_episodes(path):
     episodes = collections.defaultdict(list)
+    number = 1
     try:
         with open(path) as file:
             for number, line in enumerate(file, 1):
@@ -29,6 +30,8 @@ def read_episodes(path):
         sys.exit(f"analyse_trace.py: {path}: {error.strerror}")
     except (ValueError, KeyError, TypeError):
         sys.exit(f"analyse_trace.py: {path}:{number}: not a line of a trace (docs/trace.md)")
+    if not episodes:
+        sys.exit(f"analyse_trace.py: {path}: holds no steps (docs/trace.md)")
     return list(episodes.values())
 
 

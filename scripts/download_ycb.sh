@@ -7,7 +7,12 @@ base_url="http://ycb-benchmarks.s3-website-us-east-1.amazonaws.com/data/google"
 default_ids=(003_cracker_box 004_sugar_box 005_tomato_soup_can 006_mustard_bottle 009_gelatin_box 010_potted_meat_can
   011_banana 012_strawberry 013_apple 014_lemon 015_peach 017_orange 024_bowl 025_mug 026_sponge 029_plate 055_baseball
   077_rubiks_cube)
-folder="$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")/meshes/ycb"
+# Where config/ycb_objects.yaml looks: of the source tree, or installed.
+here="$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
+case "$here" in
+  */lib/early_fusion) folder="${here%/lib/early_fusion}/share/early_fusion/meshes/ycb" ;;
+  *) folder="$(dirname "$here")/meshes/ycb" ;;
+esac
 
 usage() {
   cat <<EOF

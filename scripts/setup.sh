@@ -5,7 +5,6 @@
 # Usage: scripts/setup.sh [--tests]
 #   --tests   also what the tests and benchmarks need, and build them
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 case "${1:-}" in
   "") with_tests=OFF ;;
@@ -16,14 +15,15 @@ case "${1:-}" in
     exit 0
     ;;
 esac
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libcli11-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev)
-debian_ros=(catkin libactionlib-dev libcamera-info-manager-dev libcv-bridge-dev libdiagnostic-updater-dev
-  libimage-transport-dev libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev
-  libroslib-dev libtf2-ros-dev libvisualization-msgs-dev python3-actionlib python3-diagnostic-msgs python3-rosbag
-  ros-actionlib-msgs ros-core ros-diagnostic-msgs ros-geometry-msgs ros-message-generation ros-robot-state-publisher
-  ros-sensor-msgs ros-std-msgs ros-std-srvs ros-trajectory-msgs ros-visualization-msgs rosbash)
+debian_ros=(catkin libactionlib-dev libcv-bridge-dev libdiagnostic-updater-dev libimage-transport-dev
+  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libvisualization-msgs-dev
+  python3-actionlib python3-diagnostic-msgs python3-rosbag ros-actionlib-msgs ros-core ros-diagnostic-msgs
+  ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs ros-trajectory-msgs
+  ros-visualization-msgs rosbash)
 for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-rostest)
 
 # Installs the Debian packages that are missing, saying which.

@@ -5,20 +5,34 @@
 #   Every argument goes to roslaunch: scripts/train.sh task:=medium channels:=32 trajectories:=4000
 #   `roslaunch --ros-args early_fusion train.launch` lists them all.
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
 case "${1:-}" in
   -h | --help)
     sed -n '2,6s/^# \{0,1\}//p' "$0"
     exit 0
     ;;
 esac
+# Files are relative to where the script was called; nodes run elsewhere.
+arguments=()
+for argument in "$@"; do
+  case "$argument" in
+    output:=* | *:=*.yaml) argument="${argument%%:=*}:=$(realpath -m "${argument#*:=}")" ;;
+  esac
+  arguments+=("$argument")
+done
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scripts/setup.sh
 . scripts/ros_environment.sh
 
 output="$PWD/runs/$(date +%Y%m%d-%H%M%S)"
-for argument in "$@"; do
-  case "$argument" in output:=*) output="${argument#output:=}" ;; esac
+task=simple
+world=""
+for argument in "${arguments[@]}"; do
+  case "$argument" in
+    output:=*) output="${argument#*:=}" ;;
+    task:=*) task="${argument#*:=}" ;;
+    world:=*) world="${argument#*:=}" ;;
+  esac
 done
 port_option=()
 if [ -z "${ROS_MASTER_URI:-}" ] || [ "$ROS_MASTER_URI" = http://localhost:11311 ]; then
@@ -34,7 +48,7 @@ and trains the policy on it, round by round; a line tells how each went. F1 is t
 the policy still tries things out; at the end it is scored on episodes that it never saw. Watch from another terminal:
   export ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP; . $PWD/devel/setup.sh; rostopic echo /progress
 TEXT
-roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "$@"
+roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "${arguments[@]}"
 
 # roslaunch exits with 0 whatever its nodes did: the result file tells.
 [ -f "$output/result.json" ] || { echo "train.sh: the session ended without a result; see the messages above" >&2; exit 1; }
@@ -51,14 +65,10 @@ PYTHON
 score "$output/result.json" "Its score"
 
 # How that compares with the policy that ships for the same task and world.
-read -r task episodes < <(/usr/bin/python3 -c '
-import json, sys
-result = json.load(open(sys.argv[1]))
-print(result["task"], result["episodes"])' "$output/result.json")
+episodes=$(/usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["episodes"])' "$output/result.json")
 shipped="models/$task.safetensors"
 [ -f "$shipped" ] || shipped=models/medium.safetensors  # does other tasks, too
-case " $* " in *" world:="*) shipped="" ;; esac
-if [ -f "$shipped" ] && [ "$episodes" -gt 0 ]; then
+if [ -z "$world" ] && [ "$episodes" -gt 0 ]; then
   comparison=$(mktemp)
   trap 'rm -f "$comparison"' EXIT
   devel/lib/early_fusion/early_fusion evaluate --policy "$shipped" --task "$task" --episodes "$episodes" \

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
-  } catch (const early_fusion::core::Error& error) {
+  } catch (const std::exception& error) {
     std::cerr << "early_fusion: " << error.what() << "\n";
     return 1;
   }

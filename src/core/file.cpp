@@ -4,12 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "early_fusion/core/error.h"
@@ -56,16 +55,17 @@ void writeAndSync(const std::string& path, const std::string& bytes) {
 }  // namespace
 
 std::string readFile(const std::string& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || fs::is_directory(path)) {
-    if (errno == 0) errno = EISDIR;
-    fail(path, "read");
+  const Descriptor file(path, O_RDONLY);
+  if (file.get() < 0) fail(path, "read");
+  std::string contents;
+  std::array<char, 65536> block;
+  for (;;) {
+    const ssize_t count = ::read(file.get(), block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "read");
+    if (count == 0) return contents;
+    contents.append(block.data(), static_cast<std::size_t>(count));
   }
-  std::ostringstream contents;
-  contents << stream.rdbuf();
-  if (stream.bad()) fail(path, "read");
-  return contents.str();
 }
 
 void writeFileAtomically(const std::string& path, const std::string& bytes) {
@@ -74,10 +74,6 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(path + ": cannot make the folder " + folder.string() + ": " + error.message());
-  if (fs::is_directory(target, error)) {
-    errno = EISDIR;
-    fail(path, "write");
-  }
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   try {
     writeAndSync(temporary, bytes);
@@ -100,7 +96,8 @@ std::string shareFolder() {
   std::vector<std::string> tried;
   for (const char* folder : {chosen, EARLY_FUSION_SOURCE_SHARE, EARLY_FUSION_INSTALL_SHARE}) {
     if (folder == nullptr) continue;
-    if (fs::is_directory(fs::path(folder) / "config")) return folder;
+    std::error_code unreadable;
+    if (fs::is_directory(fs::path(folder) / "config", unreadable)) return folder;
     tried.push_back(folder);
     if (folder == chosen) break;
   }
@@ -112,9 +109,9 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
   if (path.extension() == ".yaml" || path.extension() == ".yml" || path.has_parent_path()) return name_or_file;
   const fs::path known_folder = fs::path(shareFolder()) / "config" / folder;
   const fs::path file = known_folder / (name_or_file + ".yaml");
-  if (!name_or_file.empty() && fs::exists(file)) return file.string();
-  std::vector<std::string> known;
   std::error_code error;
+  if (!name_or_file.empty() && fs::exists(file, error)) return file.string();
+  std::vector<std::string> known;
   for (const auto& entry : fs::directory_iterator(known_folder, error)) {
     if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }

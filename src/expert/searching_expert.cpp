@@ -9,20 +9,26 @@ namespace {
 
 using core::Action;
 
-constexpr int kViewSteps = 13;  // 26 degrees: well inside a picture of 60
-constexpr int kTurnSteps = 16;  // 32 degrees before the last pan, objects have come into view far enough to go on
+constexpr int kRimSteps = 2;               // at the picture's rim, where no more than an object's edge is to be seen
 constexpr std::size_t kOccluderSize = 60;  // orientations: some 9 by 9 degrees, and the cone's 3 all round
 
-Action search(const sim::OrientationLattice& lattice, sim::Orientation orientation, Heading heading) {
-  const Heading nearer_end = orientation.pan > 0 ? Heading::kLeft : Heading::kRight;
-  const Heading farther_end = orientation.pan > 0 ? Heading::kRight : Heading::kLeft;
+/// How many steps from the optical axis an object is in view.
+int reach(const sim::ConeTable& cone) { return cone.viewSteps() - kRimSteps; }
+
+Action search(const sim::ConeTable& cone, sim::Orientation orientation, Heading heading) {
+  const sim::Orientation lowest = cone.lattice().lowest, highest = cone.lattice().highest;
+  const sim::Orientation middle{(lowest.pan + highest.pan) / 2, (lowest.tilt + highest.tilt) / 2};
+  const Heading nearer_end = orientation.pan > middle.pan ? Heading::kLeft : Heading::kRight;
+  const Heading farther_end = orientation.pan > middle.pan ? Heading::kRight : Heading::kLeft;
   if (heading == Heading::kStart) heading = nearer_end;
   if (heading == Heading::kNone) heading = farther_end;
-  const int leftmost = lattice.highest.pan - kTurnSteps, rightmost = lattice.lowest.pan + kTurnSteps;
+  // Here the view holds all to that side, and objects there have come into it far enough to go on.
+  const int turn = cone.viewSteps() + 1, leftmost = highest.pan - turn, rightmost = lowest.pan + turn;
   const bool all_seen = heading == Heading::kLeft ? orientation.pan >= leftmost : orientation.pan <= rightmost;
   if (!all_seen) return heading == Heading::kLeft ? Action::kPanLeft : Action::kPanRight;
-  if (orientation.tilt > lattice.lowest.tilt + kViewSteps) return Action::kTiltUp;
-  if (orientation.tilt < lattice.highest.tilt - kViewSteps) return Action::kTiltDown;
+  // In between the view holds front and back; where it can't hold both, the middle.
+  if (orientation.tilt > std::max(middle.tilt, lowest.tilt + reach(cone))) return Action::kTiltUp;
+  if (orientation.tilt < std::min(middle.tilt, highest.tilt - reach(cone))) return Action::kTiltDown;
   return heading == Heading::kLeft ? Action::kPanRight : Action::kPanLeft;
 }
 
@@ -36,7 +42,7 @@ bool isOccluder(const sim::ConeTable& cone, int instance) {
 bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation) {
   const std::vector<sim::Orientation>& orientations = cone.orientationsOf(instance);
   return std::any_of(orientations.begin(), orientations.end(), [&](sim::Orientation other) {
-    return std::abs(other.pan - orientation.pan) <= kViewSteps && std::abs(other.tilt - orientation.tilt) <= kViewSteps;
+    return std::max(std::abs(other.pan - orientation.pan), std::abs(other.tilt - orientation.tilt)) <= reach(cone);
   });
 }
 
@@ -51,7 +57,7 @@ Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance
   if (wanted == 0 || in_view != 0) return labelFor(cone, in_view, present, orientation);
   const int nearest = cone.nearest(orientation, present);
   const bool clear = nearest >= 0 && isOccluder(cone, nearest);
-  const Action action = clear ? Action::kRemove : search(cone.lattice(), orientation, heading);
+  const Action action = clear ? Action::kRemove : search(cone, orientation, heading);
   return {action, bit(action), 0};
 }
 

@@ -64,6 +64,7 @@ nn::StoredTensor storeBytes(const std::vector<std::uint8_t>& values, const std::
 std::vector<std::vector<core::Action>> loadActions(const nn::WeightsFile& file, const std::string& name,
                                                    const std::string& source) {
   const nn::StoredTensor& tensor = find(file, name, "U8", 2, source);
+  if (tensor.bytes.empty()) return {};
   std::vector<std::vector<core::Action>> actions(tensor.shape[0], std::vector<core::Action>(tensor.shape[1]));
   auto byte = tensor.bytes.begin();
   for (std::vector<core::Action>& trajectory : actions) {

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
 #include "early_fusion/model/action_choice.h"
@@ -217,6 +218,12 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
   statistics.loss /= std::max<std::uint64_t>(steps, 1);
   ++rounds_;
   new_trajectories_ = 0;
+  const nn::Parameters& trained = policy().parameters();
+  if (!std::isfinite(statistics.loss) || !trained.values().allFinite() || !trained.buffers().allFinite()) {
+    throw core::Error("training has diverged in round " + std::to_string(rounds_) + ", at a rate of " +
+                      std::to_string(statistics.learning_rate) +
+                      ": loss or weights are not finite; start again with a lower learning_rate");
+  }
   return statistics;
 }
 
@@ -258,8 +265,13 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
     throw core::Error(source + ": tensor " + kCounters + " should hold 4 counts; the file is damaged");
   }
   std::unique_ptr<model::GoalPolicy>& acting = averaged_ ? averaged_ : learner_;
-  acting = model::loadPolicy(file, source, acting->options().precision);
+  std::unique_ptr<model::GoalPolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
   const Eigen::Index size = acting->parameters().values().size();
+  if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
+    throw core::Error(source + ": its policy is another, of the items " + core::joined(loaded->vocabulary().names()) +
+                      "; resume with the objects and the policy that the session was started with, or start another");
+  }
+  acting = std::move(loaded);
   if (averaged_) {
     nn::Parameters& last = learner_->parameters();
     last.values() = loadFloats(file, kLearnerParameters, size, source);
@@ -271,8 +283,15 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   trajectories_seen_ = counters[0];
   new_trajectories_ = static_cast<int>(counters[1]);
   rounds_ = counters[2];
-  std::vector<Trajectory> trajectories =
-      replay(loadIntegers(file, kEpisodes, source), loadActions(file, kActions, source));
+  const std::vector<std::int64_t> episodes = loadIntegers(file, kEpisodes, source);
+  const std::vector<std::vector<core::Action>> actions = loadActions(file, kActions, source);
+  if (actions.size() != episodes.size() || static_cast<int>(episodes.size()) > options_.window) {
+    throw core::Error(source + ": tensor " + kActions + " has " + std::to_string(actions.size()) +
+                      " trajectories and " + kEpisodes + " " + std::to_string(episodes.size()) +
+                      "; both should be those of the window, at most " + std::to_string(options_.window) +
+                      "; the file is damaged");
+  }
+  std::vector<Trajectory> trajectories = replay(episodes, actions);
   window_.assign(std::make_move_iterator(trajectories.begin()), std::make_move_iterator(trajectories.end()));
 }
 

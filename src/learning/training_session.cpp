@@ -2,7 +2,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <array>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
@@ -14,7 +16,11 @@ namespace early_fusion::learning {
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
-constexpr char kOptions[] = "session.options";  // metadata: the options as YAML, but for where and whether to resume
+// Metadata. The first three are YAML: the options but for where and whether to resume, and what the task's and the
+// world's files say.
+constexpr char kOptions[] = "session.options";
+constexpr char kTask[] = "session.task";
+constexpr char kWorld[] = "session.world";
 constexpr char kElapsed[] = "session.elapsed_sec";
 constexpr char kCurve[] = "session.curve";
 
@@ -26,18 +32,44 @@ std::string learningOptions(SessionOptions options) {
   return options.options().toYaml();
 }
 
-/// @throws Error naming the first option on which the two texts of learningOptions() differ.
-void checkSame(const std::string& stored, const std::string& wanted, const std::string& source) {
-  const YAML::Node a = YAML::Load(stored), b = YAML::Load(wanted);
-  for (const auto& entry : b) {
-    const auto name = entry.first.as<std::string>();
-    const std::string before = a[name] ? a[name].as<std::string>() : "(absent)";
-    const auto now = entry.second.as<std::string>();
-    if (before != now) {
-      throw core::Error(source + ": the session was started with " + name + " = '" + before + "', not '" + now +
-                        "'; resume it with the same options, or choose another output folder");
-    }
+/// What must not change while a session goes on: YAML texts by their metadata keys.
+std::array<std::pair<const char*, std::string>, 3> settings(const SessionOptions& options, sim::Task task,
+                                                            sim::WorldOptions world) {
+  return {{{kOptions, learningOptions(options)}, {kTask, task.options().toYaml()}, {kWorld, world.options().toYaml()}}};
+}
+
+using Settings = std::map<std::string, std::string>;
+
+Settings parseSettings(const std::string& yaml, const std::string& source) {
+  try {
+    return YAML::Load(yaml).as<Settings>();
+  } catch (const YAML::Exception& error) {
+    throw core::Error(source + ": its settings can't be read (" + error.msg + "); the file is damaged");
   }
+}
+
+/// @throws Error naming the first setting that one of the two YAML texts has and the other hasn't, or has differently.
+void checkSame(const std::string& stored, const std::string& wanted, const std::string& source) {
+  const Settings before = parseSettings(stored, source), now = parseSettings(wanted, source);
+  Settings all = before;
+  all.insert(now.begin(), now.end());
+  const auto value = [](const Settings& settings, const std::string& name) {
+    const auto found = settings.find(name);
+    return found == settings.end() ? "(absent)" : "'" + found->second + "'";
+  };
+  for (const auto& [name, unused] : all) {
+    if (value(before, name) == value(now, name)) continue;
+    throw core::Error(source + ": the session was started with " + name + " = " + value(before, name) + ", not " +
+                      value(now, name) + "; resume it with the same settings, or choose another output folder");
+  }
+}
+
+double parseSeconds(const std::string& text, const std::string& source) {
+  double seconds = 0;
+  core::OptionSet set("checkpoint");
+  set.add(kElapsed, seconds, 0, 1e12, "s", "");
+  set.set(kElapsed, text, source);
+  return seconds;
 }
 
 }  // namespace
@@ -80,7 +112,8 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " pixels; set both to the same");
   }
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
-  const bool there = std::filesystem::exists(path(kCheckpoint));
+  std::error_code unreachable;  // as it will be to the one who writes there, who tells
+  const bool there = std::filesystem::exists(path(kCheckpoint), unreachable);
   if (there && !options_.resume) {
     throw core::Error(options_.output + ": holds a training session already; resume it, or choose another folder");
   }
@@ -91,10 +124,17 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
   const nn::WeightsFile file = nn::WeightsFile::read(source);
-  checkSame(file.meta(kOptions, source), learningOptions(options_), source);
+  for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
+    checkSame(file.meta(key, source), yaml, source);
+  }
   trainer_->restore(
       file, source,
-      [this](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
+      [&](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
+        for (const std::vector<core::Action>& trajectory : actions) {
+          if (static_cast<int>(trajectory.size()) == task_.steps) continue;
+          throw core::Error(source + ": has trajectories of " + std::to_string(trajectory.size()) + " steps, not " +
+                            std::to_string(task_.steps) + " as the task; the file is damaged");
+        }
         std::vector<Trajectory> window;
         const std::unique_ptr<Agent> agent = makeReplayAgent(episodes, actions);
         RolloutRunner(*world_, task_, options_.seed, teacherFromName(options_.training.teacher))
@@ -102,21 +142,22 @@ void TrainingSession::resume() {
                  [&](Trajectory trajectory) { window.push_back(std::move(trajectory)); });
         return window;
       });
-  elapsed_before_sec_ = std::stod(file.meta(kElapsed, source));
+  elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
   trajectories_before_ = trainer_->trajectoriesSeen();
   curve_ = LearningCurve::parse(file.meta(kCurve, source), source);
   started_ = std::chrono::steady_clock::now();
   resumed_ = true;
 }
 
+/// The checkpoint last: a round whose other files are there without it is trained again, and writes them again.
 void TrainingSession::save() const {
+  weights().write(weightsPath());
+  core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
-  file.metadata[kOptions] = learningOptions(options_);
+  for (const auto& [key, yaml] : settings(options_, task_, world_->options)) file.metadata[key] = yaml;
   file.metadata[kElapsed] = std::to_string(elapsedSec());
   file.metadata[kCurve] = curve_.toCsv();
   file.write(path(kCheckpoint));
-  weights().write(weightsPath());
-  core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
 }
 
 RoundStatistics TrainingSession::trainRound(const std::function<void(double)>& progress) {

@@ -137,7 +137,6 @@ class Convolution<T>::Implementation {
     reorder(dnnl::memory(dweights_, cpu(), dweights), dnnl::memory(oihw_, cpu(), oihw));
   }
 
-  const ConvolutionShape& shape() const { return shape_; }
   std::size_t weightsGradientSize() const { return dweights_.get_size() / sizeof(float); }
 
  private:
@@ -244,13 +243,6 @@ template <class T>
 Convolution<T>::~Convolution() = default;
 template <class T>
 Convolution<T>::Convolution(Convolution&&) noexcept = default;
-template <class T>
-Convolution<T>& Convolution<T>::operator=(Convolution&&) noexcept = default;
-
-template <class T>
-const ConvolutionShape& Convolution<T>::shape() const {
-  return implementation_->shape();
-}
 
 template <class T>
 void Convolution<T>::setWeights(const float* oihw) {

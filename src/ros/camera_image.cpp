@@ -17,7 +17,7 @@ int cropEdge(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* inf
   // A camera that bins its pixels may give the intrinsics of the full size.
   const double focal_length = info->K[0] * image.width / info->width;
   const long edge = std::lround(2 * focal_length * std::tan(horizontal_fov_deg * M_PI / 360));
-  return static_cast<int>(std::clamp<long>(edge, 1, shorter));
+  return static_cast<int>(std::min<long>(std::max<long>(edge, 1), shorter));
 }
 
 core::Image policyImage(const sensor_msgs::ImageConstPtr& image, int crop_edge, int size) {

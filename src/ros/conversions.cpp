@@ -123,8 +123,6 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, co
   return result;
 }
 
-sim::Score score(const EpisodeResult& result) { return {result.precision, result.recall, result.f1}; }
-
 std::string itemList(const std::vector<std::string>& items) { return items.empty() ? "nothing" : core::joined(items); }
 
 }  // namespace early_fusion::nodes

@@ -56,6 +56,11 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   }
   start_timer_.stop();
   checkVocabulary(*policy, world_->objects.vocabulary());
+  if (policy->mode != "argmax" && policy->seed != options_.seed) {
+    throw core::Error("seed: the policy draws its actions (" + policy->mode + ") with seed " +
+                      std::to_string(policy->seed) + ", the episodes are those of " + std::to_string(options_.seed) +
+                      "; give both nodes the same ~seed, or let the policy act by argmax");
+  }
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
   plan.task = options_.task;

@@ -37,17 +37,21 @@ std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> privateParameters() {
+std::vector<std::pair<std::string, std::string>> privateParameters(const core::OptionSet& options) {
   const std::string node = ::ros::this_node::getName();
   std::vector<std::pair<std::string, std::string>> parameters;
   XmlRpc::XmlRpcValue values;
   if (!::ros::param::get(node, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return parameters;
-  for (auto& [name, value] : values) parameters.emplace_back(name, toText(value, node + "/" + name));
+  for (auto& [name, value] : values) {
+    const bool is_group = value.getType() == XmlRpc::XmlRpcValue::TypeStruct;
+    if (is_group && !options.has(name)) continue;
+    parameters.emplace_back(name, toText(value, node + "/" + name));
+  }
   return parameters;
 }
 
 void loadParameters(core::OptionSet& options) {
-  for (const auto& [name, text] : privateParameters()) {
+  for (const auto& [name, text] : privateParameters(options)) {
     options.set(name, text, ::ros::this_node::getName() + "/" + name);
   }
 }

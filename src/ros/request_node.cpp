@@ -1,5 +1,6 @@
 #include "early_fusion/ros/request_node.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "early_fusion/ros/conversions.h"
@@ -26,7 +27,8 @@ std::vector<std::string> splitItems(const std::string& text) {
 core::OptionSet RequestNode::Options::options() {
   core::OptionSet set("request");
   set.add("items", items, "what is asked for at first: names separated by commas; the service changes it");
-  set.add("rate", rate_hz, 0.01, 1000, "Hz", "at most so many images a second are asked about: let the camera settle");
+  set.add("rate", rate_hz, 0.01, 1000, "Hz",
+          "at most so many images a second are asked about, 1 / rate after an action or later: let the camera settle");
   set.add("answer_timeout", answer_timeout_sec, 0.05, 3600, "s", "ask about another image when no action has come");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   addDiagnosticPeriod(set, diagnostic_period_sec);
@@ -49,8 +51,9 @@ RequestNode::RequestNode(const Options& options)
 
 void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   health_.count("images");
-  const double since_sec = (::ros::WallTime::now() - asked_at_).toSec();
-  if (since_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
+  const ::ros::WallTime now = ::ros::WallTime::now();
+  const double since_sec = (now - asked_at_).toSec(), settled_sec = (now - std::max(asked_at_, answered_at_)).toSec();
+  if (settled_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
   if (waiting_)
     health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
                                            "; is the policy running, with weights that know the items?");
@@ -59,7 +62,7 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   asked_.step = step_;
   asked_.items = items_;
   request_publisher_.publish(asked_);
-  asked_at_ = ::ros::WallTime::now();
+  asked_at_ = now;
   waiting_ = true;
   health_.count("requests");
 }
@@ -67,6 +70,7 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 void RequestNode::onAction(const Action& action) {
   if (!waiting_ || action.header.stamp != asked_.header.stamp) return;
   waiting_ = false;
+  answered_at_ = ::ros::WallTime::now();
   ++step_;
 }
 

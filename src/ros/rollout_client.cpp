@@ -52,13 +52,14 @@ void RolloutClient::start(const RolloutPlan& plan, std::function<void(learning::
 
 std::string RolloutClient::obstacle() const {
   if (!goal_client_.isServerConnected() || scene_subscriber_.getSubscriber().getNumPublishers() == 0) {
-    return "the simulator";
+    return "the simulator that publishes " + scene_subscriber_.getTopic();
   }
   const bool right_policy = policy_status_ && policy_status_->weights == plan_.weights &&
                             policy_status_->mode == plan_.mode &&
                             (plan_.mode == "argmax" || policy_status_->seed == plan_.seed);
   if (!right_policy || action_subscriber_.getSubscriber().getNumPublishers() == 0) {
-    return "a policy that acts with weights '" + plan_.weights + "' (" + plan_.mode + ")";
+    return "a policy that acts with weights '" + plan_.weights + "' (" + plan_.mode + ", seed " +
+           std::to_string(plan_.seed) + ") and publishes " + action_subscriber_.getTopic();
   }
   return "";
 }
@@ -95,7 +96,7 @@ void RolloutClient::askWhenReady() {
 void RolloutClient::onStep(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request,
                            const SceneConstPtr& scene, const ActionConstPtr& action) {
   if (phase_ != Phase::kPlaying) return;
-  last_news_ = ::ros::WallTime::now();
+  if (recorder_->wants(*scene)) last_news_ = ::ros::WallTime::now();
   const learning::TrajectoryStep* step = nullptr;
   try {
     step = recorder_->add(*image, *request, *scene, *action);
@@ -131,7 +132,8 @@ void RolloutClient::onGoalDone(const actionlib::SimpleClientGoalState& state) {
   if (state == actionlib::SimpleClientGoalState::ABORTED || state == actionlib::SimpleClientGoalState::REJECTED) {
     throw core::Error("the simulator cannot play task '" + plan_.task + "': " + state.getText());
   }
-  goal_done_ = true;
+  // Who has another goal played instead gets his turn: until the stall.
+  goal_done_ = state != actionlib::SimpleClientGoalState::PREEMPTED;
   last_news_ = ::ros::WallTime::now();
   finishWhenDone();
 }

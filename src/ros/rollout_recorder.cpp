@@ -25,7 +25,7 @@ bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
 RolloutRecorder::RolloutRecorder(const sim::World& world, const RolloutPlan& plan)
     : world_(world), plan_(plan), task_(sim::loadTask(plan.task)), next_(plan.first_episode) {}
 
-bool RolloutRecorder::wanted(const Scene& scene) const {
+bool RolloutRecorder::wants(const Scene& scene) const {
   return scene.task == task_.name && scene.seed == plan_.seed && scene.episode >= next_ && scene.episode < end() &&
          finished_.count(scene.episode) == 0;
 }
@@ -67,7 +67,7 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
 
 const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& image, const Request& request,
                                                      const Scene& scene, const Action& action) {
-  if (!wanted(scene)) return nullptr;
+  if (!wants(scene)) return nullptr;
   // What was published again, for a policy that had missed it.
   if (recording_ && recording_->stamp == scene.header.stamp) return nullptr;
   try {

@@ -4,6 +4,7 @@
 #include <ros/init.h>
 #include <ros/param.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -24,9 +25,10 @@ bool wantsHelp(int argc, char** argv) {
 
 void reportFailure(const std::string& reason) {
   ROS_FATAL("%s", reason.c_str());
-  // Of the launch file that started the node, in its namespace or one above.
+  // Of the session that the node is part of, in its namespace or one above; a node beside it must not end it.
   std::string parameter;
-  if (::ros::isInitialized() && ::ros::param::search(kFailureParameter, parameter)) {
+  if (std::getenv(kSessionVariable) != nullptr && ::ros::isInitialized() &&
+      ::ros::param::search(kFailureParameter, parameter)) {
     ::ros::param::set(parameter, reason);
   }
 }

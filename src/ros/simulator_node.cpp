@@ -152,10 +152,11 @@ void SimulatorNode::stop() {
 bool SimulatorNode::onReset(Reset::Request& request, Reset::Response& response) {
   try {
     if (driver_ == Driver::kGoal) throw core::Error("a RunEpisodes goal is being played; cancel it first");
-    if (!request.task.empty()) task_ = sim::loadTask(request.task);
+    const sim::Task task = request.task.empty() ? task_ : sim::loadTask(request.task);
+    begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, task, request.seed, request.episode);
+    task_ = task;
     seed_ = request.seed;
     free_run_episode_ = request.episode + 1;
-    begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, task_, request.seed, request.episode);
     response.message = "episode " + std::to_string(request.episode) + " of task " + task_.name + ", seed " +
                        std::to_string(request.seed);
     response.success = true;

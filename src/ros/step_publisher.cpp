@@ -21,6 +21,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim:
     : world_(std::move(world)),
       rasterizer_(*world_, world_->options.image_size),
       marker_period_(1.0 / marker_rate_hz),
+      orientation_(world_->rig.lattice().at(world_->rig.lattice().size() / 2)),
       image_transport_(node),
       camera_publisher_(image_transport_.advertiseCamera(kImageTopic, kStepQueue)),
       request_publisher_(node.advertise<Request>(kRequestTopic, kStepQueue)),

@@ -22,7 +22,7 @@ std::unique_ptr<learning::TrainingSession> makeSession() {
   learning::SessionOptions known;
   const core::OptionSet names = known.options();
   std::vector<std::pair<std::string, std::string>> given;
-  for (auto& parameter : privateParameters()) {
+  for (auto& parameter : privateParameters(names)) {
     if (names.has(parameter.first)) given.push_back(std::move(parameter));
   }
   learning::SessionOptions options = learning::resolveSessionOptions(given, ::ros::this_node::getName());
@@ -70,8 +70,7 @@ TrainerNode::~TrainerNode() {
 
 void TrainerNode::goOn() { session_->trainer().finished() ? evaluate() : rollOut(); }
 
-void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
-                       std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done) {
+void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
   const std::string bytes = session_->weights().serialize();
   Weights weights;
   weights.header.stamp = ::ros::Time::now();
@@ -81,7 +80,11 @@ void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_
   weights.precision = session_->options().policy.precision;
   weights.data.assign(bytes.begin(), bytes.end());
   workers_.publish(weights);
+}
 
+void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
+                       std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done) {
+  publishWeights(mode, seed);
   RolloutPlan plan;
   plan.task = session_->options().task;
   plan.seed = seed;
@@ -132,7 +135,10 @@ void TrainerNode::evaluate() {
   evaluation_.policy = session_->weightsPath();
   evaluation_.task = session_->task().name;
   evaluation_.seed = learning::kHeldOutSeed;
-  if (episodes == 0) return finish();
+  if (episodes == 0) {
+    publishWeights("argmax", learning::kHeldOutSeed);
+    return finish();
+  }
   const auto keep = [this, episodes](const learning::Trajectory& trajectory) {
     evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
@@ -144,7 +150,7 @@ void TrainerNode::evaluate() {
 void TrainerNode::finish() {
   session_->finish(evaluation_);
   enterStage("finished");
-  ROS_INFO("finished: %s", evaluation_.summary().c_str());
+  if (!evaluation_.outcomes.empty()) ROS_INFO("finished: %s", evaluation_.summary().c_str());
   ROS_INFO("weights: %s, result: %s", session_->weightsPath().c_str(), session_->resultPath().c_str());
 }
 
@@ -161,7 +167,7 @@ double TrainerNode::stageDone() const {
 }
 
 void TrainerNode::publishProgress() {
-  const bool finished = stage_ == "finished";
+  const bool finished = stage_ == "finished", scored = finished && !evaluation_.outcomes.empty();
   const double since_sec = finished ? 0 : (::ros::WallTime::now() - progress_taken_).toSec();
   Progress message;
   message.header.stamp = ::ros::Time::now();
@@ -171,8 +177,8 @@ void TrainerNode::publishProgress() {
   message.trajectories = progress_.trajectories;
   message.trajectories_total = progress_.trajectories_total;
   message.stage_done = stageDone();
-  message.f1 = finished ? evaluation_.f1() : progress_.f1;
-  message.agreement = finished ? evaluation_.agreement() : progress_.agreement;
+  message.f1 = scored ? evaluation_.f1() : progress_.f1;
+  message.agreement = scored ? evaluation_.agreement() : progress_.agreement;
   message.loss = progress_.loss;
   message.trajectories_per_hour = progress_.trajectories_per_hour;
   message.elapsed_sec = progress_.elapsed_sec + since_sec;

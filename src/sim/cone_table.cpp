@@ -65,10 +65,16 @@ class Views {
   std::vector<View> views_;
 };
 
+int viewStepsOf(const World& world) {
+  constexpr double kTolerance = 1e-6;  // steps
+  const double half_fov = 0.5 * world.options.horizontal_fov_deg * M_PI / 180;
+  return static_cast<int>(half_fov / kStepRad + kTolerance);
+}
+
 }  // namespace
 
 ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
-    : lattice_(world.rig.lattice()), orientations_of_(instances.size()) {
+    : lattice_(world.rig.lattice()), view_steps_(viewStepsOf(world)), orientations_of_(instances.size()) {
   assert(instances.size() <= static_cast<std::size_t>(kMaxInstances));
   Views views(world, instances);
   std::vector<std::pair<double, std::uint8_t>> in_cone;

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/core/options.h"
 #include "early_fusion/sim/convex_hull.h"
 
 namespace early_fusion::sim {
@@ -26,10 +28,13 @@ std::string place(const std::string& file, const YAML::Node& node) {
 }
 
 void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, const std::string& file) {
+  std::set<std::string> seen;
   for (const auto& entry : map) {
     const std::string key = entry.first.as<std::string>("");
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw core::Error(place(file, entry.first) + "unknown key '" + key + "'; known are " + core::joined(known));
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      throw core::Error(place(file, entry.first) + "unknown key '" + key + "'; known are " + core::joined(known));
+    }
+    if (!seen.insert(key).second) throw core::Error(place(file, entry.first) + key + " is given twice");
   }
 }
 
@@ -103,12 +108,7 @@ Object readObject(const YAML::Node& entry, const std::string& file, int max_tria
 }  // namespace
 
 ObjectSet ObjectSet::load(const std::string& yaml_file, int max_triangles) {
-  YAML::Node root;
-  try {
-    root = YAML::Load(core::readFile(yaml_file));
-  } catch (const YAML::Exception& error) {
-    throw core::Error(yaml_file + ": not valid YAML: " + error.what());
-  }
+  const YAML::Node root = core::loadYamlFile(yaml_file);
   if (!root.IsMap() || !root["objects"] || !root["objects"].IsSequence() || root["objects"].size() == 0) {
     throw core::Error(yaml_file + ": needs 'objects', a list of {name, mesh, scale}");
   }

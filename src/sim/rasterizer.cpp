@@ -16,8 +16,8 @@ namespace early_fusion::sim {
 
 namespace {
 
-constexpr int kSizeStep = 16;                                              // [px]
-constexpr int kMaxImageSize = kMaxScreenSize / 2 / kSizeStep * kSizeStep;  // [px]
+constexpr int kSizeStep = 16;  // [px]
+static_assert(kMaxImageSize == kMaxScreenSize / 2 / kSizeStep * kSizeStep);
 
 int checkedSize(int image_size) {
   if (image_size >= kSizeStep && image_size <= kMaxImageSize && image_size % kSizeStep == 0) return image_size;

@@ -146,7 +146,8 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
   return result;
 }
 
-/// Mean of the comparisons over a box of 3x3 texels about the point, texels at its rim by the share that is in the box.
+/// Mean of the comparisons over a box of 3x3 texels, texels at its rim by the share that is in the box. Its middle is
+/// half a texel, about a millimetre, to the left of the point and above it.
 FloatLanes ShadowMap::filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y,
                                FloatLanes depth) const {
   std::int32_t offset[kLanes];

@@ -57,7 +57,7 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
   if (!std::isfinite(determinant) || determinant == 0) {
     throw core::Error(conversion.path + ": mesh '" + mesh.mName.C_Str() + "' is scaled to nothing or not finite");
   }
-  // The cofactor matrix keeps normals perpendicular under any scale; its sign turns them outwards under a mirror.
+  // The inverse transpose keeps normals perpendicular under any scale, and outward under a mirror.
   const Eigen::Matrix3d normal_transform = transform.linear().inverse().transpose();
   MeshPart& part = conversion.part_of_material[mesh.mMaterialIndex];
   const auto first = static_cast<std::uint32_t>(part.vertices.size());

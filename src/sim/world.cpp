@@ -4,6 +4,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/sim/rasterizer.h"
 #include "kitchen.h"
 
 namespace early_fusion::sim {
@@ -37,7 +38,7 @@ core::OptionSet WorldOptions::options() {
   set.add("placement_width", placement_width, 0.0, 100.0, "m", "along y, about the counter's middle: for the centres");
   set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
   set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects");
-  set.add("image_size", image_size, 16, 1024, "px", "edge of the square picture, a multiple of 16");
+  set.add("image_size", image_size, 16, kMaxImageSize, "px", "edge of the square picture, a multiple of 16");
   set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
   set.add("max_triangles", max_triangles, 16, 1000000, "", "a mesh with more is simplified when it is loaded");
   return set;

@@ -106,7 +106,8 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
       {"render --step 48 --out " + path("x.png"), "--step"},
-      {"render --size 20 --out " + path("x.png"), "20"},
+      {"render --size 20 --out " + path("x.png"), "--size: Value 20 not a multiple of 16"},
+      {"render --size 1008 --out " + path("x.png"), "--size: Value 1008 not in range 16 to 992"},
       {"inspect --task nothing", "nothing"},
       {"evaluate --policy expert --episodes 0", "episodes"},
   };

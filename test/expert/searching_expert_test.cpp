@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
+#include "../sim/test_world.h"
 #include "early_fusion/sim/episode.h"
 
 namespace early_fusion::expert {
@@ -54,6 +56,54 @@ TEST(SearchingExpert, TiltsBeforeItTurnsWhereFrontOrBackIsOutOfView) {
   EXPECT_EQ(atApart({24, 22}, Heading::kLeft, {kFarRight}), Action::kTiltUp);
   EXPECT_EQ(atApart({24, 1}, Heading::kLeft, {kFarRight}), Action::kTiltDown);
   EXPECT_EQ(atApart({0, 1}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
+}
+
+/// @param pans of all pictures so far.
+Heading headingOver(const std::vector<int>& pans) {
+  for (std::size_t i = pans.size(); i-- > 1 && i + 2 >= pans.size();) {
+    if (pans[i] != pans[i - 1]) return pans[i] > pans[i - 1] ? Heading::kLeft : Heading::kRight;
+  }
+  return pans.size() < 3 ? Heading::kStart : Heading::kNone;
+}
+
+/// The shipped world, but for a text in its camera's or its own file.
+std::shared_ptr<const sim::World> worldWith(const std::string& name, const std::string& from, const std::string& to) {
+  const sim::TestFolder folder;
+  for (const char* file : {"config/world.yaml", "urdf/pan_tilt_camera.urdf"}) {
+    const std::string path = core::shareFolder() + "/" + file;
+    const std::string text = core::readFile(path);
+    folder.write(file, path.find(name) == std::string::npos ? text : sim::replaced(text, from, to));
+  }
+  for (const char* file : {"config/objects.yaml", "urdf/kitchen.urdf", "meshes"}) {
+    std::filesystem::create_symlink(core::shareFolder() + "/" + file, folder.path() + "/" + file);
+  }
+  return sim::loadWorld(folder.path() + "/config/world.yaml");
+}
+
+TEST(SearchingExpert, LooksFromEndToEndWhicheverWayTheCameraIsBuilt) {
+  const auto wide_tilt = worldWith("camera.urdf", "upper=\"0.767945\"", "upper=\"1.396264\"");
+  const auto mostly_left = worldWith("camera.urdf", "upper=\"0.907572\"", "upper=\"1.745330\"");
+  const auto narrow_view = worldWith("world.yaml", "horizontal_fov_deg: 60", "horizontal_fov_deg: 40");
+  for (const auto& other : {wide_tilt, mostly_left, narrow_view}) {
+    const std::vector<sim::Instance> instances = {{0, -2, 0, 0}};  // behind the camera
+    const sim::ConeTable cone(*other, instances);
+    const Orientation lowest = cone.lattice().lowest, highest = cone.lattice().highest;
+    for (const int tilt : {lowest.tilt, highest.tilt}) {
+      Orientation at{highest.pan - 1, tilt};
+      std::vector<int> pans;
+      for (int step = 0; step < 300; ++step) {
+        pans.push_back(at.pan);
+        at = sim::turned(at, searchingLabel(cone, instances, 1, at, headingOver(pans), {0}).action);
+        ASSERT_TRUE(cone.lattice().contains(at));
+      }
+      for (auto half = pans.begin(); half != pans.end(); half += 150) {
+        EXPECT_GE(*std::max_element(half, half + 150), highest.pan - cone.viewSteps() - 1);
+        EXPECT_LE(*std::min_element(half, half + 150), lowest.pan + cone.viewSteps() + 1);
+      }
+    }
+  }
+  const sim::ConeTable cone(*mostly_left, {{0, -2, 0, 0}});
+  EXPECT_EQ(searchingLabel(cone, {{0, -2, 0, 0}}, 1, {8, 12}, Heading::kStart, {0}).action, Action::kPanRight);
 }
 
 TEST(SearchingExpert, RemovesOnTheWayWhatIsLargeEnoughToHideSomething) {
@@ -153,14 +203,14 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
   double f1 = 0;
   for (int number = 0; number < kEpisodes; ++number) {
     sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 5, number));
-    Heading heading = Heading::kStart;
+    std::vector<int> pans;
     while (!episode.finished()) {
       const sim::EpisodeState state = episode.state();
+      pans.push_back(state.orientation.pan);
+      const Heading heading = headingOver(pans);
       episode.step(searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation, heading,
                                   state.request)
                        .action);
-      const int panned = episode.state().orientation.pan - state.orientation.pan;
-      if (panned != 0) heading = panned > 0 ? Heading::kLeft : Heading::kRight;
     }
     f1 += episode.score().f1 / kEpisodes;
   }

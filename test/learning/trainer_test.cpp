@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "early_fusion/core/error.h"
 #include "synthetic_trajectories.h"
 
@@ -295,6 +297,109 @@ TEST(Trainer, UnlikelihoodKeepsThePolicyFromWhatMayDoHarm) {
       EXPECT_LT(probabilityWhereItMayDoHarm(action, 6, at_rest), 0.3);   // 4 / (4 + 7 * 3)
     }
   }
+}
+
+/// Trains where the label is PAN_LEFT and TILT_UP is as good, whatever the frame shows.
+/// @return the mean of their probabilities.
+std::pair<double, double> probabilitiesOfTwoOptimalActions(double soft_labels) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = 200;
+  options.requests_per_frame = 1;
+  options.soft_labels = soft_labels;
+  const auto trainer = makeTrainer(options);
+  const core::Request request = {0};
+  const auto both =
+      static_cast<expert::ActionSet>(expert::bit(core::Action::kPanLeft) | expert::bit(core::Action::kTiltUp));
+  while (!trainer->finished()) {
+    while (!trainer->roundDue()) {
+      Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
+      for (TrajectoryStep& step : trajectory.steps) step.lessons = {{request, {core::Action::kPanLeft, both, 3}}};
+      trainer->add(std::move(trajectory));
+    }
+    trainer->trainRound();
+  }
+  const Trajectory trajectory = syntheticTrajectory(1000);
+  std::pair<double, double> mean;
+  for (const TrajectoryStep& step : trajectory.steps) {
+    model::Observation observation;
+    observation.frames.fill(step.frame->data());
+    observation.request = &request;
+    model::Probabilities probabilities;
+    trainer->policy().predict({observation}, probabilities);
+    mean.first += probabilities(0, static_cast<int>(core::Action::kPanLeft)) / kTinySteps;
+    mean.second += probabilities(0, static_cast<int>(core::Action::kTiltUp)) / kTinySteps;
+  }
+  return mean;
+}
+
+TEST(Trainer, SoftLabelsShareATargetAmongTheOptimalActions) {
+  const auto [label, other] = probabilitiesOfTwoOptimalActions(0);
+  EXPECT_GT(label, 0.9);
+  EXPECT_LT(other, 0.05);
+  const auto [shared_label, shared_other] = probabilitiesOfTwoOptimalActions(0.8);
+  EXPECT_NEAR(shared_label, 0.6, 0.05);
+  EXPECT_NEAR(shared_other, 0.4, 0.05);
+}
+
+TEST(Trainer, WeightDecayKeepsWeightsSmall) {
+  TrainingOptions options = tinyTraining();
+  const auto free = makeTrainer(options);
+  options.weight_decay = 0.5;
+  const auto decayed = makeTrainer(options);
+  while (!free->finished()) runRound(*free);
+  while (!decayed->finished()) runRound(*decayed);
+  EXPECT_LT(decayed->policy().parameters().values().norm(), 0.95 * free->policy().parameters().values().norm());
+}
+
+TEST(Trainer, TrainingThatDivergesIsAnError) {
+  TrainingOptions options = tinyTraining();
+  options.learning_rate = 1;
+  for (const double averaging : {0.0, 0.9}) {
+    options.averaging = averaging;
+    const auto trainer = makeTrainer(options);
+    runRound(*trainer);
+    trainer->policy().parameters().values()[0] = std::numeric_limits<float>::quiet_NaN();
+    trainer->policy().parametersChanged();
+    try {
+      runRound(*trainer);
+      FAIL() << "accepted";
+    } catch (const core::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("diverged in round 2"), std::string::npos) << error.what();
+    }
+  }
+}
+
+/// @return the error of restoring `file` in a trainer for these items.
+std::string restoreError(const nn::WeightsFile& file, const core::Vocabulary& vocabulary = tinyVocabulary()) {
+  try {
+    Trainer(tinyPolicy(), tinyTraining(), vocabulary, 3).restore(file, "broken.safetensors", replay);
+  } catch (const core::Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Trainer, ACheckpointOfOtherItemsOrWithPartsThatDontFitIsRefused) {
+  const auto trainer = makeTrainer();
+  runRound(*trainer);
+  const nn::WeightsFile good = trainer->save();
+  EXPECT_EQ(restoreError(good), "accepted");
+  std::vector<std::string> items = tinyVocabulary().names();
+  items.push_back("teapot");
+  EXPECT_NE(restoreError(good, core::Vocabulary(items)).find("broken.safetensors: its policy is another"),
+            std::string::npos);
+  std::swap(items[0], items.back());
+  items.pop_back();
+  EXPECT_NE(restoreError(good, core::Vocabulary(items)).find(tinyVocabulary().names()[0]), std::string::npos);
+
+  nn::WeightsFile fewer = good;
+  nn::StoredTensor& actions = fewer.tensors.at("checkpoint.window.actions");
+  actions.shape[0] -= 1;
+  actions.bytes.resize(actions.bytes.size() - kTinySteps);
+  EXPECT_NE(restoreError(fewer).find("checkpoint.window.actions has 3 trajectories"), std::string::npos);
+  nn::WeightsFile none = good;
+  none.tensors.at("checkpoint.window.actions") = {"U8", {std::int64_t(1) << 60, 0}, ""};
+  EXPECT_NE(restoreError(none).find("checkpoint.window.actions has 0 trajectories"), std::string::npos);
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

@@ -100,6 +100,29 @@ TEST_F(TrainingSessionTest, RefusesToOverwriteASessionAndToResumeAnother) {
   }
 }
 
+TEST_F(TrainingSessionTest, RefusesToGoOnWithAnotherTaskOrWorldOfTheSameName) {
+  {
+    TrainingSession session(options("a"), world());
+    runTo(session, 3);
+  }
+  SessionOptions again = options("a");
+  again.resume = true;
+  const auto error = [&](const std::shared_ptr<const sim::World>& world) -> std::string {
+    try {
+      TrainingSession session(again, world);
+    } catch (const core::Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(error(world()), "accepted");
+  auto other = std::make_shared<sim::World>(*world());
+  other->options.clearance = 0.02;
+  EXPECT_NE(error(other).find("clearance = '0.005', not '0.02'"), std::string::npos) << error(other);
+  core::writeFileAtomically(folder_ / "short.yaml", "{instances: 3, requested: 1, steps: 5}");
+  EXPECT_NE(error(world()).find("steps = '4', not '5'"), std::string::npos) << error(world());
+}
+
 TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
   SessionOptions held_out = options("a");
   held_out.seed = kHeldOutSeed;

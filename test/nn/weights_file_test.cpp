@@ -1,6 +1,7 @@
 #include "early_fusion/nn/weights_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -45,7 +46,8 @@ void expectError(const std::string& bytes, const std::string& part) {
 
 TEST(WeightsFile, RoundTripsThroughBytesAndDisk) {
   const WeightsFile file = sample();
-  const std::string path = (std::filesystem::temp_directory_path() / "early_fusion_weights_test.safetensors").string();
+  const std::string path = std::filesystem::temp_directory_path() /
+                           ("early_fusion_weights_test" + std::to_string(::getpid()) + ".safetensors");
   file.write(path);
   const WeightsFile read = WeightsFile::read(path);
   std::filesystem::remove(path);

@@ -54,6 +54,18 @@ class Faults(unittest.TestCase):
 
 
 class Trace(unittest.TestCase):
+    def test_a_file_that_is_no_trace_is_an_error_that_names_it(self):
+        with tempfile.NamedTemporaryFile() as trace:
+            for contents, message in ((b"", "holds no steps"), (b"\xff\x00", ":1: not a line"), (b"{}\n", ":1: not a line")):
+                trace.truncate(0)
+                trace.seek(0)
+                trace.write(contents)
+                trace.flush()
+                with self.assertRaises(SystemExit) as caught:
+                    analyse_trace.read_episodes(trace.name)
+                self.assertIn(trace.name, str(caught.exception))
+                self.assertIn(message, str(caught.exception))
+
     def test_the_scores_are_the_evaluations_and_the_causes_take_all_that_is_lost(self):
         with tempfile.TemporaryDirectory() as folder:
             trace, scores = os.path.join(folder, "trace.json"), os.path.join(folder, "scores.json")

@@ -63,7 +63,7 @@ TEST(ObjectSet, ReducesHullsToAtMostAHundredCorners) {
 }
 
 TEST(ObjectSet, NamesFileLineAndKeyOfAMistake) {
-  expectError("objects: [", {"objects.yaml", "not valid YAML"});
+  expectError("objects: [", {"objects.yaml:1", "not valid YAML"});
   expectError("things: []\n", {"objects.yaml: needs 'objects'"});
   expectError("objects: []\n", {"objects.yaml: needs 'objects'"});
   expectError("[]", {"objects.yaml: needs 'objects'"});
@@ -74,6 +74,8 @@ TEST(ObjectSet, NamesFileLineAndKeyOfAMistake) {
   expectError("objects:\n  - {name: box, mesh: [box.obj]}\n", {"objects.yaml:2", "needs a mesh"});
   expectError("objects:\n  - {name: box, mesh: box.obj, size: 2}\n",
               {"objects.yaml:2", "unknown key 'size'", "mesh, name, scale"});
+  expectError("objects:\n  - {name: box, mesh: box.obj, name: can}\n", {"objects.yaml:2", "name is given twice"});
+  expectError("objects:\n  - {name: box, mesh: box.obj}\nobjects: []\n", {"objects.yaml:3", "objects is given twice"});
   expectError("objects:\n  - {name: box, mesh: none.obj}\n", {"objects.yaml:2", "object 'box'", "none.obj"});
   expectError("objects:\n  - {name: box, mesh: box.obj}\n  - {name: box, mesh: can.obj}\n",
               {"objects.yaml", "'box' is listed twice"});

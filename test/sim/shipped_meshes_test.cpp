@@ -12,6 +12,7 @@
 #include "early_fusion/sim/world.h"
 #include "make_meshes/kitchen.h"
 #include "make_meshes/objects.h"
+#include "test_world.h"
 
 namespace early_fusion {
 namespace {
@@ -20,24 +21,6 @@ using make_meshes::Corner;
 using make_meshes::Mesh;
 using make_meshes::Model;
 using make_meshes::Triangle;
-
-/// A folder that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "shipped_meshes_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a folder like " + name);
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 const std::vector<Model>& objects() {
   static const std::vector<Model> models = make_meshes::makeObjects();
@@ -51,7 +34,7 @@ const std::vector<Model>& kitchen() {
 
 // Pictures are compared as pixels: other versions of zlib pack the same ones into other bytes.
 void expectShipped(const std::string& name, const std::vector<Model>& models) {
-  const TemporaryFolder made;
+  const sim::TestFolder made;
   const std::string shipped = core::shareFolder() + "/meshes/" + name;
   std::size_t files = 0;
   for (const Model& model : models) {

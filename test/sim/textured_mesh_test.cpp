@@ -4,12 +4,11 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "early_fusion/core/error.h"
 #include "handmade_world.h"
+#include "test_world.h"
 
 namespace early_fusion::sim {
 namespace {
@@ -21,35 +20,20 @@ constexpr int kManyTriangles = 100000;
 
 class TexturedMeshTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string folder = (fs::temp_directory_path() / "textured_mesh_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(folder.data()), nullptr);
-    folder_ = folder;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
 
   /// Red in the upper left quarter, else blue.
   void writePicture(const std::string& name, int width, int height) const {
     cv::Mat picture(height, width, CV_8UC3, cv::Scalar(200, 0, 0));
     picture(cv::Rect(0, 0, width / 2, height / 2)) = cv::Scalar(0, 0, 200);
-    ASSERT_TRUE(cv::imwrite((folder_ / name).string(), picture));
+    ASSERT_TRUE(cv::imwrite(folder_.path() + "/" + name, picture));
   }
 
-  std::string errorOf(const std::string& path) const {
-    try {
-      loadTexturedMesh(path, kUnscaled, kManyTriangles);
-    } catch (const core::Error& error) {
-      return error.what();
-    }
-    return "";
+  static std::string errorOf(const std::string& path) {
+    return sim::errorOf([&] { loadTexturedMesh(path, kUnscaled, kManyTriangles); });
   }
 
-  fs::path folder_;
+  const TestFolder folder_;
 };
 
 const char* const kSquare =
@@ -182,7 +166,7 @@ TEST_F(TexturedMeshTest, LargeMeshesAreSimplifiedAndKeepTheirShape) {
 }
 
 TEST_F(TexturedMeshTest, ErrorsNameThePathAndTheFault) {
-  const std::string missing = (folder_ / "missing.obj").string();
+  const std::string missing = folder_.path() + "/missing.obj";
   EXPECT_NE(errorOf(missing).find(missing), std::string::npos);
 
   const std::string garbage = write("garbage.obj", "this is no mesh\n");

@@ -57,7 +57,7 @@ Model pottedMeatCan() {
   Canvas canvas(kObjectTextureSize, kTin);
   Panel label = canvas.panel(kLabel);
   label.fill(blue);
-  // The ring starts in the middle of a narrow side: the wide sides are around 1/4 and 3/4.
+  // The ring starts in the middle of a wide side: these are around the narrow ones.
   for (const double middle : {0.25, 0.75}) {
     label.text("HAM", middle - 0.15, 0.04, middle + 0.15, 0.44, yellow);
     label.ellipse(middle, 0.66, 0.12, 0.19, white);

@@ -7,7 +7,7 @@
 namespace early_fusion::make_meshes {
 
 /// Where on the texture the faces of a box lie. Side faces stand upright as seen from outside; the top is seen from
-/// above and the bottom from below, with the front at the lower edge.
+/// above, with the front at the lower edge, and the bottom from below, with the front at the upper edge.
 struct BoxFaces {
   UvRect front;  ///< faces +x
   UvRect back;   ///< faces -x

@@ -43,7 +43,7 @@ enum RandomStream : std::uint64_t {
   kSamplingStream = 2,      ///< {episode, step}: the action drawn from the policy's probabilities
   kInitialisation = 3,      ///< {}: the network's first weights
   kShuffleStream = 4,       ///< {round, epoch}: the order of training samples
-  kDropoutStream = 5,       ///< {training step}: dropout masks
+  kDropoutStream = 5,       ///< {round, first frame of the batch}: dropout masks
   kRelabelStream = 6,       ///< {episode, step}: the other requests that a frame is labelled for
   kRandomPolicyStream = 7,  ///< {episode, step}: the random baseline
   kPersistenceStream = 8    ///< {episode, step}: whether a persistent draw is made anew

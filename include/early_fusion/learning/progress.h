@@ -7,7 +7,7 @@ namespace early_fusion::learning {
 
 /// Where a training session stands.
 struct Progress {
-  std::string stage = "training";  ///< training, evaluation or finished
+  std::string stage = "training";  ///< or evaluation
   std::uint64_t trajectories = 0;
   std::uint64_t trajectories_total = 0;
   std::uint64_t evaluated = 0;  ///< held-out episodes played so far
@@ -18,8 +18,8 @@ struct Progress {
   double elapsed_sec = 0;  ///< over all runs of the session
   double remaining_sec = 0;
 
-  /// One line for a terminal: "1250/3000 (42%)  F1 0.713  agreement 0.802  loss 0.534  6100 trajectories/h  12:18
-  /// left".
+  /// One line for a terminal: "1250/3000 (42%)  F1 0.713  agreement 0.802  loss 0.534  6100 trajectories/h  8:50
+  /// elapsed  12:18 left".
   std::string line() const;
 };
 

@@ -69,6 +69,7 @@ class Trainer {
   int missingInRound() const { return newInRound() - new_trajectories_; }
 
   /// Trains on the window. Call when roundDue(). @param progress told after every batch which share is done.
+  /// @throws Error when loss or weights are no longer finite: nothing of the trainer is worth keeping then.
   RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
 
   /// The policy with everything else that restore() needs. The window's frames and labels are not in it: the actions

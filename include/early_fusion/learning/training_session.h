@@ -73,8 +73,7 @@ class TrainingSession {
   std::string weightsPath() const;
   std::string resultPath() const;
 
-  /// Writes weights.safetensors and result.json: the evaluation's means, the session's options, time and learning
-  /// curve.
+  /// Writes weights.safetensors and result.json: the evaluation, the session's options and its time.
   void finish(const Evaluation& evaluation);
 
  private:

@@ -36,7 +36,7 @@ class EarlyFusion : public GoalPolicy {
   void countItems(const Observation& observation, std::size_t index, nn::Matrix& counts) const;
   void prepareBatch(const std::vector<Sample>& samples);
   void reserve(int images);
-  /// What follows the trunk at inference; goal and hidden are scratch (channels), features (featureCount()).
+  /// What follows the trunk at inference; hidden is scratch (channels), features (featureCount()).
   void decide(const float* features, float* hidden, float* probabilities) const;
 
   PolicyOptions options_;

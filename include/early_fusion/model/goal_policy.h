@@ -73,9 +73,9 @@ class GoalPolicy {
   /// Which statistics lossAndGradients() normalises with: the batch's until this is called.
   virtual void setNormalisation(nn::Normalisation normalisation) = 0;
 
-  /// Forward with dropout, then backward: fills parameters().gradients() with the gradient of the
-  /// weighted mean cross-entropy, and updates the running statistics. Neighbouring samples with the same frames share
-  /// the work that their goals have no part in, and count as one image in the batch statistics up to there.
+  /// Forward with dropout, then backward: fills parameters().gradients() with the gradient of the weighted mean of
+  /// cross-entropy and unlikelihood, and updates the running statistics. Neighbouring samples with the same frames
+  /// share the work that their goals have no part in, and count as one image in the batch statistics up to there.
   /// @param dropout_seed decides the dropout mask. @return the loss.
   virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
 };

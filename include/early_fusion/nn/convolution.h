@@ -31,9 +31,6 @@ class Convolution {
   Convolution(const ConvolutionShape& shape, bool input_gradient, int threads);
   ~Convolution();
   Convolution(Convolution&&) noexcept;
-  Convolution& operator=(Convolution&&) noexcept;
-
-  const ConvolutionShape& shape() const;
 
   /// @param oihw weights (out_channels, in_channels, 3, 3).
   void setWeights(const float* oihw);

@@ -14,9 +14,6 @@ class Linear {
   /// Adds "name.weight" (out,in) and "name.bias" (out) to `parameters`, which must outlive the layer.
   Linear(Parameters& parameters, const std::string& name, int inputs, int outputs, int threads);
 
-  int inputs() const { return inputs_; }
-  int outputs() const { return outputs_; }
-
   /// PyTorch's defaults.
   void initialise(core::Random& random);
 

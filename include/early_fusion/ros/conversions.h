@@ -50,8 +50,6 @@ struct SceneState {
 /// @throws core::Error naming the field, the value and what is allowed.
 SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const sim::OrientationLattice& lattice);
 
-sim::Score score(const EpisodeResult& result);
-
 /// "mug, bowl", or "nothing".
 std::string itemList(const std::vector<std::string>& items);
 

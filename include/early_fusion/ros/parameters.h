@@ -8,9 +8,10 @@
 
 namespace early_fusion::nodes {
 
-/// The node's private ROS parameters ("~image_size") as (name, text); needs ros::init() and a master.
-/// @throws core::Error naming a parameter that is a list or a group.
-std::vector<std::pair<std::string, std::string>> privateParameters();
+/// The node's private ROS parameters ("~image_size") as (name, text), but for groups that are none of `options`: image
+/// transports keep parameters of their own there. Needs ros::init() and a master.
+/// @throws core::Error naming a parameter that is a list, or an option that is a group.
+std::vector<std::pair<std::string, std::string>> privateParameters(const core::OptionSet& options);
 
 /// Sets every option that has a private ROS parameter ("~image_size") from it.
 /// @throws core::Error naming the parameter, its value and the allowed range; for an unknown one, the known ones.

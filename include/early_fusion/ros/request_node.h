@@ -44,7 +44,7 @@ class RequestNode {
   std::uint32_t step_ = 0;
   bool waiting_ = false;  // for the action that answers asked_
   Request asked_;
-  ::ros::WallTime asked_at_;
+  ::ros::WallTime asked_at_, answered_at_;
 
   ::ros::Publisher request_publisher_;
   ::ros::Subscriber action_subscriber_;

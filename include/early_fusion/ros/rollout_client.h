@@ -41,7 +41,7 @@ class RolloutClient {
   /// Whether a plan is at hand.
   bool busy() const { return phase_ != Phase::kIdle; }
 
-  /// What is being waited for, for people: "the simulator", "a policy with weights 'x'", "episodes 3 to 49".
+  /// What is being waited for, for people: "the simulator that publishes scene", "episodes 3 to 49".
   std::string waitsFor() const;
 
  private:

@@ -48,7 +48,9 @@ class RolloutRecorder {
   std::optional<learning::Trajectory> next();
 
   bool complete() const { return next_ == end(); }
-  std::uint64_t done() const { return next_ - plan_.first_episode; }
+
+  /// Whether a step is of an episode of the plan that is not recorded yet.
+  bool wants(const Scene& scene) const;
 
   /// A run of episodes that are not recorded, as [first, last).
   std::pair<std::uint64_t, std::uint64_t> missing() const;
@@ -63,7 +65,6 @@ class RolloutRecorder {
   };
 
   std::uint64_t end() const { return plan_.first_episode + plan_.episodes; }
-  bool wanted(const Scene& scene) const;
   void begin(const Scene& scene);
   void check(const sensor_msgs::Image& image, const Request& request, const Scene& scene, const Action& action) const;
 

@@ -27,7 +27,7 @@ class SimulatorNode {
   struct Options {
     std::string world;            ///< a world file; empty: config/world.yaml of the package
     std::string task = "simple";  ///< of free_run, and of `reset` without a task
-    std::uint64_t seed = 1;       ///< likewise
+    std::uint64_t seed = 1;       ///< of free_run
     bool free_run = false;
     double rate_hz = 0;  ///< 0: as fast as actions come
     double republish_sec = 1;

@@ -32,6 +32,7 @@ inline constexpr char kProgressTopic[] = "progress";  ///< latched
 
 /// A parameter that a launch file sets to "" and a node that cannot go on sets to the reason; see runNode().
 inline constexpr char kFailureParameter[] = "session_failure";
+inline constexpr char kSessionVariable[] = "EARLY_FUSION_SESSION";  // in the environment of a session's nodes
 
 /// A parameter that a launch file sets to false and the trainer to true once its session has begun: a trainer that is
 /// respawned goes on with that session instead of refusing the run folder of another.

@@ -46,6 +46,7 @@ class TrainerNode {
   void finish();
 
   /// Publishes the weights as they stand, to be acted with in this mode, and has episodes played with them.
+  void publishWeights(const std::string& mode, std::uint64_t seed);
   void play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
             std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);

@@ -20,6 +20,9 @@ class ConeTable {
 
   const OrientationLattice& lattice() const { return lattice_; }
 
+  /// How many steps the picture reaches to each side of the optical axis.
+  int viewSteps() const { return view_steps_; }
+
   /// Instance indices in the cone, by increasing distance from the camera centre to the hull (ties: lower index).
   struct Range {
     const std::uint8_t* first;
@@ -41,6 +44,7 @@ class ConeTable {
 
  private:
   OrientationLattice lattice_;
+  int view_steps_;
   std::vector<std::uint32_t> offsets_;  // by lattice index, into nearest_first_
   std::vector<std::uint8_t> nearest_first_;
   std::vector<std::vector<Orientation>> orientations_of_;
