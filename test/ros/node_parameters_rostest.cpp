@@ -1,7 +1,13 @@
 // Nodes that are started wrongly: they must end with exit code 1 and say which parameter is wrong.
 #include <gtest/gtest.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/param.h>
+
+#include <algorithm>
 
 #include "child_process.h"
+#include "early_fusion/ros/topics.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {
@@ -49,6 +55,37 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
                     Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
                     Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
+
+TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
+  ::ros::init(::ros::M_string(), "node_parameters");
+  const SmallSession files;
+  for (const bool in_session : {false, true}) {
+    ::ros::param::set(kFailureParameter, "");
+    ChildProcess::Environment environment;
+    if (in_session) environment.emplace_back(kSessionVariable, "1");
+    ChildProcess node({std::string(EARLY_FUSION_NODES) + "/policy_node", "__name:=failing", "_mode:=guess"},
+                      environment, files.path("log"));
+    ASSERT_TRUE(node.ends(20)) << node.output();
+    std::string noted;
+    ASSERT_TRUE(::ros::param::get(kFailureParameter, noted));
+    EXPECT_EQ(noted.find("guess") != std::string::npos, in_session) << noted;
+  }
+  ::ros::param::del(kFailureParameter);
+}
+
+TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
+  ::ros::init(::ros::M_string(), "node_parameters");
+  ::ros::param::set("/plugged/compressed/mode", "any");
+  const SmallSession files;
+  ChildProcess node({std::string(EARLY_FUSION_NODES) + "/request_node", "__name:=plugged"}, {}, files.path("log"));
+  const auto is_up = [] {
+    ::ros::master::V_TopicInfo topics;
+    ::ros::master::getTopics(topics);
+    return std::any_of(topics.begin(), topics.end(),
+                       [](const ::ros::master::TopicInfo& topic) { return topic.name == "/request"; });
+  };
+  while (!is_up()) ASSERT_FALSE(node.ends(0.05)) << node.output();
+}
 
 TEST(NodeHelp, ListsEveryParameterWithRangeAndDefault) {
   const SmallSession files;
