@@ -205,6 +205,26 @@ TEST(Trainer, LearnsEveryRequestOfAFrame) {
   EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
 }
 
+/// Over the frames of some trajectories, each seen three times.
+double meanProbability(Trainer& trainer, core::Action action) {
+  const core::Request request = {0};
+  double sum = 0;
+  int count = 0;
+  for (std::uint64_t episode = 1000; episode < 1020; ++episode) {
+    const Trajectory trajectory = syntheticTrajectory(episode);
+    for (const TrajectoryStep& step : trajectory.steps) {
+      model::Observation observation;
+      observation.frames.fill(step.frame->data());
+      observation.request = &request;
+      model::Probabilities probabilities;
+      trainer.policy().predict({observation}, probabilities);
+      sum += probabilities(0, static_cast<int>(action));
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 /// Trains where, at random, half of the frames ask for COLLECT and half for one more PAN_LEFT before it.
 /// @return the mean probability of PAN_LEFT when the policy sees one of those frames three times.
 double panAfterVainCollects(bool vain_collects) {
@@ -225,22 +245,7 @@ double panAfterVainCollects(bool vain_collects) {
     }
     trainer->trainRound();
   }
-  const core::Request request = {0};
-  double sum = 0;
-  int count = 0;
-  for (std::uint64_t episode = 1000; episode < 1020; ++episode) {
-    const Trajectory trajectory = syntheticTrajectory(episode);
-    for (const TrajectoryStep& step : trajectory.steps) {
-      model::Observation again;
-      again.frames.fill(step.frame->data());
-      again.request = &request;
-      model::Probabilities probabilities;
-      trainer->policy().predict({again}, probabilities);
-      sum += probabilities(0, static_cast<int>(core::Action::kPanLeft));
-      ++count;
-    }
-  }
-  return sum / count;
+  return meanProbability(*trainer, core::Action::kPanLeft);
 }
 
 TEST(Trainer, LearnsNotToRepeatACollectThatChangedNothing) {
@@ -318,18 +323,7 @@ std::pair<double, double> probabilitiesOfTwoOptimalActions(double soft_labels) {
     }
     trainer->trainRound();
   }
-  const Trajectory trajectory = syntheticTrajectory(1000);
-  std::pair<double, double> mean;
-  for (const TrajectoryStep& step : trajectory.steps) {
-    model::Observation observation;
-    observation.frames.fill(step.frame->data());
-    observation.request = &request;
-    model::Probabilities probabilities;
-    trainer->policy().predict({observation}, probabilities);
-    mean.first += probabilities(0, static_cast<int>(core::Action::kPanLeft)) / kTinySteps;
-    mean.second += probabilities(0, static_cast<int>(core::Action::kTiltUp)) / kTinySteps;
-  }
-  return mean;
+  return {meanProbability(*trainer, core::Action::kPanLeft), meanProbability(*trainer, core::Action::kTiltUp)};
 }
 
 TEST(Trainer, SoftLabelsShareATargetAmongTheOptimalActions) {
@@ -339,6 +333,34 @@ TEST(Trainer, SoftLabelsShareATargetAmongTheOptimalActions) {
   const auto [shared_label, shared_other] = probabilitiesOfTwoOptimalActions(0.8);
   EXPECT_NEAR(shared_label, 0.6, 0.05);
   EXPECT_NEAR(shared_other, 0.4, 0.05);
+}
+
+/// Trains where, at random, one of seven frames asks for COLLECT and the others for PAN_LEFT.
+/// @return the mean probability of COLLECT.
+double probabilityOfTheRareAction(double balance) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = 200;
+  options.requests_per_frame = 1;
+  options.balance = balance;
+  const auto trainer = makeTrainer(options);
+  const core::Request request = {0};
+  while (!trainer->finished()) {
+    while (!trainer->roundDue()) {
+      Trajectory trajectory = syntheticTrajectory(trainer->trajectoriesSeen());
+      for (TrajectoryStep& step : trajectory.steps) {
+        const core::Action label = step.action == core::Action::kIdle ? core::Action::kCollect : core::Action::kPanLeft;
+        step.lessons = {{request, {label, expert::bit(label), 1}}};
+      }
+      trainer->add(std::move(trajectory));
+    }
+    trainer->trainRound();
+  }
+  return meanProbability(*trainer, core::Action::kCollect);
+}
+
+TEST(Trainer, BalanceWeighsRareActionsMore) {
+  EXPECT_LT(probabilityOfTheRareAction(0), 0.25);  // 1 / 7
+  EXPECT_GT(probabilityOfTheRareAction(1), 0.35);  // 1 / 2
 }
 
 TEST(Trainer, WeightDecayKeepsWeightsSmall) {
