@@ -74,11 +74,8 @@ Lesson TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Re
 }
 
 expert::Heading TrajectoryRecorder::heading() const {
-  for (std::size_t i = latest_pan_.size() - 1; i > 0; --i) {
-    if (latest_pan_[i] > latest_pan_[i - 1]) return expert::Heading::kLeft;
-    if (latest_pan_[i] < latest_pan_[i - 1]) return expert::Heading::kRight;
-  }
-  return latest_pan_.size() < model::kHistory ? expert::Heading::kStart : expert::Heading::kNone;
+  static_assert(expert::kHeadingPictures == model::kHistory);
+  return expert::headingOver(latest_pan_);
 }
 
 /// Lessons for the policy's own request, and for requests that this scene could have had: each 1 to requested_ of the

@@ -58,14 +58,6 @@ TEST(SearchingExpert, TiltsBeforeItTurnsWhereFrontOrBackIsOutOfView) {
   EXPECT_EQ(atApart({0, 1}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
 }
 
-/// @param pans of all pictures so far.
-Heading headingOver(const std::vector<int>& pans) {
-  for (std::size_t i = pans.size(); i-- > 1 && i + 2 >= pans.size();) {
-    if (pans[i] != pans[i - 1]) return pans[i] > pans[i - 1] ? Heading::kLeft : Heading::kRight;
-  }
-  return pans.size() < 3 ? Heading::kStart : Heading::kNone;
-}
-
 /// The shipped world, but for a text in its camera's or its own file.
 std::shared_ptr<const sim::World> worldWith(const std::string& name, const std::string& from, const std::string& to) {
   const sim::TestFolder folder;

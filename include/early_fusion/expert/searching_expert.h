@@ -4,9 +4,16 @@
 
 namespace early_fusion::expert {
 
-/// Which way the camera was last panned over the last three pictures: left, right, not at all, or not at all and there
-/// have been no three yet.
+/// How many pictures tell a heading: as many as a policy sees.
+inline constexpr std::size_t kHeadingPictures = 3;
+
+/// Which way the camera was last panned over the last kHeadingPictures: left, right, not at all, or not at all and
+/// there have not been so many yet.
 enum class Heading { kStart, kNone, kLeft, kRight };
+
+/// @param pans of the pictures so far, the oldest first [steps]; those before the last kHeadingPictures may be left
+/// out.
+Heading headingOver(const std::vector<int>& pans);
 
 /// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.
 bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation);
