@@ -4,8 +4,8 @@
 
 #include "command.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/image.h"
 #include "early_fusion/learning/evaluation.h"
-#include "early_fusion/sim/rasterizer.h"
 #include "named_agent.h"
 #include "pictures.h"
 
@@ -90,9 +90,9 @@ void addRender(CLI::App& app) {
                    "who acts until then: expert, searching, random, idle, or a weights file")
       ->capture_default_str();
   command->add_option("--size", options->size, "edge of a drawn image [px], a multiple of 16")
-      ->check(CLI::Range(16, sim::kMaxImageSize))
+      ->check(CLI::Range(core::kImageSizeStep, core::kMaxImageSize))
       ->check([](const std::string& size) {
-        return std::stoi(size) % 16 == 0 ? std::string() : "Value " + size + " not a multiple of 16";
+        return core::isImageSize(std::stoi(size)) ? std::string() : "Value " + size + " not " + core::kImageSizes;
       })
       ->capture_default_str();
   command->add_option("--scale", options->scale, "enlarge each image so many times")

@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
 #include "early_fusion/model/action_choice.h"
+#include "early_fusion/sim/task.h"
 
 namespace early_fusion::learning {
 
 core::OptionSet TrainingOptions::options() {
   core::OptionSet set("training");
   set.add("trajectories", trajectories, 1, 100000000, "trajectories", "how many to roll out and learn from in all");
+  set.add(
+      "most_instances", most_instances, 0, sim::kMaxInstances, "",
+      "where it is more than the task's instances, each episode that is learnt from draws its number of objects from "
+      "one to the other; the policy is scored on the task as it is");
   set.add("trajectories_per_round", trajectories_per_round, 1, 100000, "trajectories",
           "new ones before the policy is trained");
   set.add("window", window, 1, 100000, "trajectories", "the most recent ones that are trained on");
@@ -57,12 +63,20 @@ constexpr char kLearnerParameters[] = "checkpoint.learner.parameters";  // of th
 constexpr char kLearnerBuffers[] = "checkpoint.learner.buffers";
 constexpr char kEpisodes[] = "checkpoint.window.episodes";  // (trajectories)
 constexpr char kActions[] = "checkpoint.window.actions";    // (trajectories, steps)
-constexpr char kCounters[] = "checkpoint.counters";         // trajectories, new ones, rounds, Adam's steps
+constexpr char kBrightness[] =
+    "checkpoint.window.brightness";                  // (trajectories) of the first frame, the sum of its bytes
+constexpr char kCounters[] = "checkpoint.counters";  // trajectories, new ones, rounds, Adam's steps
 
 nn::AdamOptions adamOptions(const TrainingOptions& options) {
   nn::AdamOptions adam;
   adam.weight_decay = options.weight_decay;
   return adam;
+}
+
+std::int64_t brightness(const Trajectory& trajectory) {
+  if (trajectory.steps.empty()) return 0;
+  const std::vector<std::uint8_t>& frame = *trajectory.steps.front().frame;
+  return std::accumulate(frame.begin(), frame.end(), std::int64_t{0});
 }
 
 }  // namespace
@@ -244,15 +258,17 @@ nn::WeightsFile Trainer::save() const {
     file.tensors[kLearnerBuffers] = storeFloats(learner_->parameters().buffers());
   }
   const auto steps = window_.empty() ? 0 : static_cast<std::int64_t>(window_.front().steps.size());
-  std::vector<std::int64_t> episodes;
+  std::vector<std::int64_t> episodes, brightnesses;
   std::vector<std::uint8_t> actions;
   for (const Trajectory& trajectory : window_) {
     episodes.push_back(static_cast<std::int64_t>(trajectory.episode));
+    brightnesses.push_back(brightness(trajectory));
     for (const TrajectoryStep& step : trajectory.steps) actions.push_back(static_cast<std::uint8_t>(step.action));
   }
   file.tensors[kFirstMoment] = storeFloats(adam_.firstMoment());
   file.tensors[kSecondMoment] = storeFloats(adam_.secondMoment());
   file.tensors[kEpisodes] = storeIntegers(episodes);
+  file.tensors[kBrightness] = storeIntegers(brightnesses);
   file.tensors[kActions] = storeBytes(actions, {static_cast<std::int64_t>(episodes.size()), steps});
   file.tensors[kCounters] = storeIntegers({static_cast<std::int64_t>(trajectories_seen_), new_trajectories_,
                                            static_cast<std::int64_t>(rounds_), adam_.stepCount()});
@@ -292,6 +308,13 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
                       "; the file is damaged");
   }
   std::vector<Trajectory> trajectories = replay(episodes, actions);
+  std::vector<std::int64_t> brightnesses;
+  for (const Trajectory& trajectory : trajectories) brightnesses.push_back(brightness(trajectory));
+  if (brightnesses != loadIntegers(file, kBrightness, source)) {
+    throw core::Error(source +
+                      ": its episodes show other pictures than when they were played: the URDF, the meshes or "
+                      "the program have changed since; resume with those of then, or start another session");
+  }
   window_.assign(std::make_move_iterator(trajectories.begin()), std::make_move_iterator(trajectories.end()));
 }
 

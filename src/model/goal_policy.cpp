@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/image.h"
 #include "early_fusion/model/early_fusion.h"
 
 namespace early_fusion::model {
@@ -25,8 +26,7 @@ void validate(const PolicyOptions& options, const core::Vocabulary& vocabulary) 
   require(options.fusion_block >= 0 && options.fusion_block < kBlocks, "fusion_block",
           std::to_string(options.fusion_block), "in [0, 3]");
   require(options.dropout >= 0 && options.dropout <= 0.95, "dropout", std::to_string(options.dropout), "in [0, 0.95]");
-  require(options.image_size >= 16 && options.image_size <= 992 && options.image_size % 16 == 0, "image_size",
-          std::to_string(options.image_size), "a multiple of 16 in [16, 992]");
+  require(core::isImageSize(options.image_size), "image_size", std::to_string(options.image_size), core::kImageSizes);
   require(options.precision == "f32" || options.precision == "bf16" || options.precision == "auto", "precision",
           "'" + options.precision + "'", "f32, bf16 or auto");
   require(vocabulary.size() > 0, "vocabulary", "an empty one", "a list of at least one item");
@@ -124,7 +124,8 @@ core::OptionSet PolicyOptions::options() {
   set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
           "The block whose output the goal is joined to; 0 joins it to the image itself.");
   set.add("dropout", dropout, 0.0, 0.95, "", "Share of the hidden layer's units that are dropped in training.");
-  set.add("image_size", image_size, 16, 992, "px", "Edge of the square frames that the policy sees; a multiple of 16.");
+  set.add("image_size", image_size, core::kImageSizeStep, core::kMaxImageSize, "px",
+          "Edge of the square frames that the policy sees; a multiple of 16.");
   set.addChoice("precision", precision, {"auto", "f32", "bf16"},
                 "What convolutions compute in; auto is bf16 where the processor has it natively.");
   return set;

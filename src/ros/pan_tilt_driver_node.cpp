@@ -57,6 +57,8 @@ PanTiltDriverNode::PanTiltDriverNode(const Options& options)
       tilt_publisher_(node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1, true)) {
   action_subscriber_ =
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
+  request_subscriber_ = node_.subscribe<Request>(
+      kRequestTopic, 10, [this](const RequestConstPtr& request) { latest_request_ = request->header.stamp; });
   if (options_.use_joint_states) {
     joint_subscriber_ = node_.subscribe<sensor_msgs::JointState>(
         kJointStatesTopic, 1, [this](const sensor_msgs::JointStateConstPtr& states) { onJointStates(*states); });
@@ -77,6 +79,9 @@ void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
 }
 
 void PanTiltDriverNode::onAction(const Action& message) {
+  if (!message.header.stamp.isZero() && message.header.stamp < latest_request_) {
+    return health_.drop("late action", message.name + " answers an image that is no longer asked about");
+  }
   if (!target_) {
     return health_.drop("action too early", "no joint states of '" + rig_.panJoint() + "' and '" + rig_.tiltJoint() +
                                                 "' yet, so " + message.name + " cannot be carried out");

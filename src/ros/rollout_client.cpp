@@ -82,6 +82,7 @@ void RolloutClient::askWhenReady() {
   const auto [first, last] = recorder_->missing();
   RunEpisodesGoal goal;
   goal.task = plan_.task;
+  goal.most_instances = static_cast<std::uint32_t>(plan_.most_instances);
   goal.seed = plan_.seed;
   goal.first_episode = first;
   goal.episodes = static_cast<std::uint32_t>(last - first);

@@ -23,7 +23,10 @@ bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
 }  // namespace
 
 RolloutRecorder::RolloutRecorder(const sim::World& world, const RolloutPlan& plan)
-    : world_(world), plan_(plan), task_(sim::loadTask(plan.task)), next_(plan.first_episode) {}
+    : world_(world),
+      plan_(plan),
+      task_(sim::withUpTo(plan.most_instances, sim::loadTask(plan.task))),
+      next_(plan.first_episode) {}
 
 bool RolloutRecorder::wants(const Scene& scene) const {
   return scene.task == task_.name && scene.seed == plan_.seed && scene.episode >= next_ && scene.episode < end() &&
@@ -32,6 +35,11 @@ bool RolloutRecorder::wants(const Scene& scene) const {
 
 void RolloutRecorder::begin(const Scene& scene) {
   SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
+  const int instances = static_cast<int>(start.instances.size());
+  if (instances < task_.instances || instances > task_.mostInstances()) {
+    throw core::Error(stepName(scene) + ": has " + std::to_string(instances) + " objects on the counter; expected " +
+                      std::to_string(task_.instances) + " to " + std::to_string(task_.mostInstances()));
+  }
   sim::EpisodeSetup setup{std::move(start.instances), std::move(start.state.request), start.state.orientation};
   sim::Episode episode(world_, task_, std::move(setup));
   learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),

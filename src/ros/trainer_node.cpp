@@ -82,29 +82,29 @@ void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
   workers_.publish(weights);
 }
 
-void TrainerNode::play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
-                       std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done) {
-  publishWeights(mode, seed);
-  RolloutPlan plan;
+void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory,
+                       std::function<void()> on_done) {
+  publishWeights(plan.mode, plan.seed);
   plan.task = session_->options().task;
-  plan.seed = seed;
-  plan.first_episode = first;
-  plan.episodes = static_cast<std::uint32_t>(episodes);
   plan.weights = weights_id_;
-  plan.mode = mode;
   plan.teacher = learning::teacherFromName(session_->options().training.teacher);
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
 void TrainerNode::rollOut() {
-  learning::Trainer& trainer = session_->trainer();
+  const learning::Trainer& trainer = session_->trainer();
+  RolloutPlan plan;
+  plan.seed = session_->options().seed;
+  plan.first_episode = trainer.trajectoriesSeen();
+  plan.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
+  plan.most_instances = trainer.options().most_instances;
+  plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
     progress_ = session_->progress();
     progress_taken_ = ::ros::WallTime::now();
   };
-  play(trainer.options().exploration, session_->options().seed, trainer.trajectoriesSeen(), trainer.missingInRound(),
-       keep, [this] { train(); });
+  play(plan, keep, [this] { train(); });
   enterStage("rollouts");
 }
 
@@ -143,7 +143,10 @@ void TrainerNode::evaluate() {
     evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
-  play("argmax", learning::kHeldOutSeed, 0, episodes, keep, [this] { finish(); });
+  RolloutPlan plan;
+  plan.seed = learning::kHeldOutSeed;
+  plan.episodes = static_cast<std::uint32_t>(episodes);
+  play(plan, keep, [this] { finish(); });
   enterStage("evaluation");
 }
 

@@ -16,13 +16,11 @@ namespace early_fusion::sim {
 
 namespace {
 
-constexpr int kSizeStep = 16;  // [px]
-static_assert(kMaxImageSize == kMaxScreenSize / 2 / kSizeStep * kSizeStep);
+static_assert(core::kMaxImageSize == kMaxScreenSize / 2 / core::kImageSizeStep * core::kImageSizeStep);
 
 int checkedSize(int image_size) {
-  if (image_size >= kSizeStep && image_size <= kMaxImageSize && image_size % kSizeStep == 0) return image_size;
-  throw core::Error("image_size is " + std::to_string(image_size) + " px; it must be a multiple of " +
-                    std::to_string(kSizeStep) + " up to " + std::to_string(kMaxImageSize));
+  if (core::isImageSize(image_size)) return image_size;
+  throw core::Error("image_size is " + std::to_string(image_size) + " px; it must be " + core::kImageSizes);
 }
 
 LinearForm cameraAxis(const RenderPose& world_from_camera, int axis) {

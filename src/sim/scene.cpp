@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
@@ -60,19 +61,22 @@ std::vector<Instance> placeAll(const World& world, const std::vector<int>& items
 }
 
 std::vector<Instance> sampleInstances(const World& world, const Task& task, core::Random& random) {
+  const int more = task.mostInstances() - task.instances;
+  const int count = task.instances + (more > 0 ? random.below(more + 1) : 0);
   std::size_t most = 0;
   for (int i = 0; i < kTriesPerScene; ++i) {
-    std::vector<int> items(task.instances);
+    std::vector<int> items(count);
     for (int& item : items) item = random.below(world.objects.size());
     std::vector<Instance> placed = placeAll(world, items, random);
     if (placed.size() == items.size()) return placed;
     most = std::max(most, placed.size());
   }
   std::ostringstream text;
-  text << "only " << most << " of the " << task.instances << " instances of task '" << task.name << "' fit on the "
+  text << "only " << most << " of the " << count << " instances of task '" << task.name << "' fit on the "
        << world.options.placement_width << " x " << world.options.placement_depth << " m of the counter, "
        << world.options.clearance
-       << " m apart; ask for fewer instances, or raise placement_width or placement_depth, or lower clearance";
+       << " m apart; lower the task's instances, or most_instances in training, or clearance, "
+       << "or raise placement_width or placement_depth";
   throw core::Error(text.str());
 }
 
@@ -87,8 +91,8 @@ EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& r
   task.validate("task '" + task.name + "'");
   EpisodeSetup setup;
   setup.instances = sampleInstances(world, task, random);
-  std::vector<int> order(task.instances);
-  for (int i = 0; i < task.instances; ++i) order[i] = i;
+  std::vector<int> order(setup.instances.size());
+  std::iota(order.begin(), order.end(), 0);
   random.shuffle(order);
   for (int i = 0; i < task.requested; ++i) setup.request.push_back(setup.instances[order[i]].item);
   std::sort(setup.request.begin(), setup.request.end());

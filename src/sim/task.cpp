@@ -11,6 +11,8 @@ core::OptionSet Task::options() {
   core::OptionSet set("task");
   set.add("name", name, "what the task is called in logs and metadata; the file's name when left out");
   set.add("instances", instances, 1, kMaxInstances, "", "objects on the counter, types drawn with repetition");
+  set.add("most_instances", most_instances, 0, kMaxInstances, "",
+          "where it is more than instances, each episode draws its number of objects from one to the other");
   set.add("requested", requested, 1, kMaxInstances, "", "how many of the instances are requested");
   set.add("steps", steps, 1, 100000, "", "actions in an episode");
   return set;
@@ -28,6 +30,11 @@ Task loadTask(const std::string& name_or_file) {
   task.name = std::filesystem::path(file).stem().string();
   task.options().setFromYamlFile(file);
   task.validate(file);
+  return task;
+}
+
+Task withUpTo(int most, Task task) {
+  task.most_instances = std::max(task.most_instances, most);
   return task;
 }
 

@@ -4,7 +4,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
-#include "early_fusion/sim/rasterizer.h"
+#include "early_fusion/core/image.h"
 #include "kitchen.h"
 
 namespace early_fusion::sim {
@@ -38,7 +38,8 @@ core::OptionSet WorldOptions::options() {
   set.add("placement_width", placement_width, 0.0, 100.0, "m", "along y, about the counter's middle: for the centres");
   set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
   set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects");
-  set.add("image_size", image_size, 16, kMaxImageSize, "px", "edge of the square picture, a multiple of 16");
+  set.add("image_size", image_size, core::kImageSizeStep, core::kMaxImageSize, "px",
+          "edge of the square picture, a multiple of 16");
   set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
   set.add("max_triangles", max_triangles, 16, 1000000, "", "a mesh with more is simplified when it is loaded");
   return set;
@@ -49,9 +50,9 @@ std::shared_ptr<const World> loadWorld(const std::string& world_file) {
   auto world = std::make_shared<World>();
   WorldOptions& options = world->options;
   options.options().setFromYamlFile(yaml_file);
-  if (options.image_size % 16 != 0) {
-    throw core::Error(yaml_file + ": image_size is " + std::to_string(options.image_size) +
-                      "; it must be a multiple of 16");
+  if (!core::isImageSize(options.image_size)) {
+    throw core::Error(yaml_file + ": image_size is " + std::to_string(options.image_size) + "; it must be " +
+                      core::kImageSizes);
   }
   const auto path = [&](const std::string& name) { return core::resolvePath(yaml_file, name); };
   world->rig = CameraRig::load(path(options.camera_urdf), options.pan_joint, options.tilt_joint, options.optical_frame);

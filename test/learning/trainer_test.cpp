@@ -374,9 +374,10 @@ TEST(Trainer, TrainingThatDivergesIsAnError) {
 }
 
 /// @return the error of restoring `file` in a trainer for these items.
-std::string restoreError(const nn::WeightsFile& file, const core::Vocabulary& vocabulary = tinyVocabulary()) {
+std::string restoreError(const nn::WeightsFile& file, const core::Vocabulary& vocabulary = tinyVocabulary(),
+                         const Trainer::Replay& play = replay) {
   try {
-    Trainer(tinyPolicy(), tinyTraining(), vocabulary, 3).restore(file, "broken.safetensors", replay);
+    Trainer(tinyPolicy(), tinyTraining(), vocabulary, 3).restore(file, "broken.safetensors", play);
   } catch (const core::Error& error) {
     return error.what();
   }
@@ -404,6 +405,21 @@ TEST(Trainer, ACheckpointOfOtherItemsOrWithPartsThatDontFitIsRefused) {
   nn::WeightsFile none = good;
   none.tensors.at("checkpoint.window.actions") = {"U8", {std::int64_t(1) << 60, 0}, ""};
   EXPECT_NE(restoreError(none).find("checkpoint.window.actions has 0 trajectories"), std::string::npos);
+}
+
+TEST(Trainer, EpisodesThatLookDifferentWhenPlayedAgainAreRefused) {
+  const auto trainer = makeTrainer();
+  runRound(*trainer);
+  const auto play = [](const std::vector<std::int64_t>& episodes,
+                       const std::vector<std::vector<core::Action>>& actions) {
+    std::vector<Trajectory> window = replay(episodes, actions);
+    std::vector<std::uint8_t> frame = *window.back().steps.front().frame;
+    frame[0] ^= 1;
+    window.back().steps.front().frame = std::make_shared<const std::vector<std::uint8_t>>(frame);
+    return window;
+  };
+  const std::string error = restoreError(trainer->save(), tinyVocabulary(), play);
+  EXPECT_NE(error.find("broken.safetensors: its episodes show other pictures"), std::string::npos) << error;
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

@@ -36,7 +36,7 @@ class TrainingSessionTest : public testing::Test {
   }
 
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
-    RolloutRunner runner(session.world(), session.task(), session.options().seed,
+    RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
                          teacherFromName(session.trainer().options().teacher));
     while (session.trainer().trajectoriesSeen() < trajectories) {
       const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
@@ -64,6 +64,25 @@ TEST_F(TrainingSessionTest, RunsToAScoreAndTheSameSeedGivesTheSameWeights) {
   }
   EXPECT_TRUE(core::readFile(folder_ / "a" / "weights.safetensors") ==
               core::readFile(folder_ / "b" / "weights.safetensors"));
+}
+
+TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
+  SessionOptions varied = options("varied");
+  varied.training.most_instances = 6;
+  TrainingSession session(varied, world());
+  const Evaluation evaluation = runSession(session, [](const Progress&) {});
+  const auto agent = makePolicyAgent(session.trainer().policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
+  const auto played = [&](const sim::Task& task, std::uint64_t seed, std::uint64_t episode) {
+    std::optional<Trajectory> trajectory;
+    RolloutRunner(*world(), task, seed).run(episode, 1, *agent, true, [&](Trajectory t) { trajectory = std::move(t); });
+    return *trajectory;
+  };
+  for (const Trajectory& learnt : session.trainer().window()) {
+    EXPECT_EQ(*learnt.steps[0].frame, *played(session.trainingTask(), varied.seed, learnt.episode).steps[0].frame);
+  }
+  for (const EpisodeOutcome& outcome : evaluation.outcomes) {
+    EXPECT_EQ(outcome.agreement, played(session.task(), kHeldOutSeed, outcome.episode).agreement());
+  }
 }
 
 TEST_F(TrainingSessionTest, AnInterruptedSessionGoesOnBitForBit) {

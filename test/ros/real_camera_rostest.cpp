@@ -126,6 +126,17 @@ TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTh
   EXPECT_NEAR(*pan_, limit, 1e-9);
   act("PAN_RIGHT", header);
   EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + sim::kStepRad) < 1e-9; }));
+
+  // An answer that comes when another image has been asked about is not carried out, the answer to that one is.
+  const RequestConstPtr first = nextRequest();
+  const RequestConstPtr second = nextRequest();
+  ASSERT_TRUE(first && second);
+  spinFor(0.2);
+  act("PAN_RIGHT", first->header);
+  spinFor(0.2);
+  EXPECT_NEAR(*pan_, limit - sim::kStepRad, 1e-9);
+  act("PAN_RIGHT", second->header);
+  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + 2 * sim::kStepRad) < 1e-9; }));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ class RolloutRecorderTest : public testing::Test {
 
   const SmallSession files_;
   const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
-  const sim::Task task_ = sim::loadTask(files_.task());
+  sim::Task task_ = sim::loadTask(files_.task());
   sim::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
   RolloutPlan plan_;
   std::unique_ptr<RolloutRecorder> recorder_;
@@ -144,6 +144,16 @@ TEST_F(RolloutRecorderTest, IgnoresWhatIsNotOfThePlan) {
   foreign[0].scene.task = "other";
   EXPECT_EQ(add(foreign[0]), nullptr);
   EXPECT_NE(add(play(10)[0]), nullptr);
+}
+
+TEST_F(RolloutRecorderTest, DropsAnEpisodeWithMoreObjectsThanThePlanHas) {
+  task_ = sim::withUpTo(6, task_);
+  std::vector<Messages> steps = play(10);
+  ASSERT_GT(steps[0].scene.instances.size(), 3u);
+  EXPECT_NE(complaint(steps[0]).find("objects on the counter; expected 3 to 3"), std::string::npos);
+  plan_.most_instances = 6;
+  recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
+  EXPECT_NE(add(steps[0]), nullptr);
 }
 
 TEST_F(RolloutRecorderTest, IgnoresAStepThatIsPublishedAgain) {

@@ -215,6 +215,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   RunEpisodesGoal goal;
   goal.task = files_.task();
   goal.seed = 9;
+  goal.most_instances = 6;
   goal.first_episode = 20;
   goal.episodes = 2;
   client.sendGoal(goal);
@@ -222,6 +223,8 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
     for (int step = 0; step < SmallSession::kSteps; ++step) {
       ASSERT_TRUE(awaitStep(episode, step)) << episode << " " << step;
       EXPECT_FALSE(reset(1, 1)) << "a goal is being played";
+      const sim::Task task = sim::withUpTo(6, sim::loadTask(files_.task()));
+      EXPECT_EQ(scenes_.back()->instances.size(), sim::sampleEpisode(*world_, task, 9, episode).instances.size());
       action_publisher_.publish(answer("IDLE"));
     }
   }
@@ -250,6 +253,12 @@ TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   client.sendGoal(goal);
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  goal.episodes = 1;
+  goal.most_instances = 4000000000u;
+  client.sendGoal(goal);
+  ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
+  EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  EXPECT_NE(client.getState().getText().find("most_instances is 4000000000"), std::string::npos);
 }
 
 TEST_F(SimulatorNodeTest, MarkersShowTheObjectsToWhoLooks) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "early_fusion/sim/placed_hull.h"
@@ -43,6 +44,20 @@ TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
       }
     }
   }
+}
+
+TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {
+  Task task = makeTask(2, 2);
+  task.most_instances = 5;
+  std::map<std::size_t, int> counts;
+  for (std::uint64_t episode = 0; episode < 400; ++episode) {
+    const EpisodeSetup setup = sampleEpisode(world(), task, 1, episode);
+    ++counts[setup.instances.size()];
+    EXPECT_EQ(setup.request.size(), 2u);
+  }
+  EXPECT_EQ(counts.begin()->first, 2u);
+  EXPECT_EQ(counts.rbegin()->first, 5u);
+  for (const auto& [instances, count] : counts) EXPECT_GT(count, 60) << instances;
 }
 
 TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {

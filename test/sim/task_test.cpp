@@ -60,5 +60,12 @@ TEST(Task, CannotRequestMoreThanThereIs) {
   EXPECT_TRUE(mentions(error, "mine.yaml: requested is 3; it must be at most instances, 2")) << error;
 }
 
+TEST(Task, WithUpToSoManyInstancesHasNoFewerThanBefore) {
+  EXPECT_EQ(withUpTo(12, loadTask("simple")).instances, 4);
+  EXPECT_EQ(withUpTo(12, loadTask("simple")).mostInstances(), 12);
+  EXPECT_EQ(withUpTo(12, withUpTo(20, loadTask("simple"))).mostInstances(), 20);
+  EXPECT_EQ(withUpTo(5, loadTask("hard")).mostInstances(), 12);
+}
+
 }  // namespace
 }  // namespace early_fusion::sim

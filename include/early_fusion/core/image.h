@@ -6,6 +6,16 @@
 
 namespace early_fusion::core {
 
+/// The edge of a square picture that is drawn and decided from is a multiple of kImageSizeStep up to kMaxImageSize
+/// [px].
+inline constexpr int kImageSizeStep = 16;
+inline constexpr int kMaxImageSize = 992;
+inline constexpr char kImageSizes[] = "a multiple of 16 in [16, 992]";
+
+inline bool isImageSize(int size) {
+  return size >= kImageSizeStep && size <= kMaxImageSize && size % kImageSizeStep == 0;
+}
+
 /// An 8-bit RGB image, (height, width, 3), row-major, without padding.
 struct Image {
   int width = 0;

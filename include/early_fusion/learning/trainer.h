@@ -17,6 +17,7 @@ namespace early_fusion::learning {
 /// config/presets/*.yaml: how a policy learns (Walsman et al. 2019, sec. IV-C).
 struct TrainingOptions {
   int trajectories = 3000;             ///< in the whole session
+  int most_instances = 0;              ///< on the counter in episodes that are learnt from: sim::withUpTo()
   int trajectories_per_round = 50;     ///< new ones before the policy is trained on the window
   int window = 150;                    ///< most recent trajectories that are trained on
   double epochs = 3;                   ///< passes over the window in a round; a fraction takes a random part of it
@@ -81,7 +82,8 @@ class Trainer {
                                                        const std::vector<std::vector<core::Action>>& actions)>;
 
   /// Goes on from what save() gave, bit for bit.
-  /// @throws Error naming `source` and the tensor or key that is missing or doesn't fit.
+  /// @throws Error naming `source` and the tensor or key that is missing or doesn't fit, or where the replayed episodes
+  /// don't begin with the pictures of then.
   void restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay);
 
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }

@@ -52,7 +52,10 @@ class TrainingSession {
 
   const SessionOptions& options() const { return options_; }
   const sim::World& world() const { return *world_; }
+  /// What the policy is to do and is scored on.
   const sim::Task& task() const { return task_; }
+  /// What it learns from.
+  sim::Task trainingTask() const { return sim::withUpTo(options_.training.most_instances, task_); }
   Trainer& trainer() { return *trainer_; }
   const Trainer& trainer() const { return *trainer_; }
 

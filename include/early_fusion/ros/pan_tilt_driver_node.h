@@ -1,6 +1,7 @@
 #pragma once
 
 #include <early_fusion/Action.h>
+#include <early_fusion/Request.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
 
@@ -15,7 +16,9 @@
 namespace early_fusion::nodes {
 
 /// Turns the policy's actions into position commands for a real pan-tilt unit: 2 degrees a move, within the URDF's
-/// joint limits, from where the joint states say that it is.
+/// joint limits, from where the joint states say that it is. An action that answers an older image than the latest
+/// request is dropped: the camera would move while the policy decides on what it sees now. One without a stamp, as
+/// typed by hand, is carried out.
 class PanTiltDriverNode {
  public:
   struct Options {
@@ -42,9 +45,11 @@ class PanTiltDriverNode {
   sim::CameraRig rig_;
   Health health_;
   std::optional<sim::Orientation> target_;  // nothing is commanded before the joints are known
+  ::ros::Time latest_request_;              // the stamp of its image
   ::ros::Publisher pan_publisher_;
   ::ros::Publisher tilt_publisher_;
   ::ros::Subscriber action_subscriber_;
+  ::ros::Subscriber request_subscriber_;
   ::ros::Subscriber joint_subscriber_;
 };
 

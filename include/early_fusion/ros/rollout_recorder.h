@@ -18,7 +18,8 @@ namespace early_fusion::nodes {
 
 /// Which episodes are wanted, and how they must be played to count.
 struct RolloutPlan {
-  std::string task;  ///< as a RunEpisodes goal names it: simple, medium, hard or a YAML file
+  std::string task;        ///< as a RunEpisodes goal names it: simple, medium, hard or a YAML file
+  int most_instances = 0;  ///< likewise
   std::uint64_t seed = 0;
   std::uint64_t first_episode = 0;
   std::uint32_t episodes = 0;

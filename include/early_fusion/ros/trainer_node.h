@@ -45,10 +45,10 @@ class TrainerNode {
   void evaluate();
   void finish();
 
-  /// Publishes the weights as they stand, to be acted with in this mode, and has episodes played with them.
   void publishWeights(const std::string& mode, std::uint64_t seed);
-  void play(const std::string& mode, std::uint64_t seed, std::uint64_t first, int episodes,
-            std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
+  /// Publishes the weights as they stand and has the plan's episodes played with them.
+  /// @param plan without task, weights and teacher, which are the session's.
+  void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
   /// [0, 1]
   double stageDone() const;

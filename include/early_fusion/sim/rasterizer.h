@@ -9,17 +9,14 @@
 
 namespace early_fusion::sim {
 
-/// The largest edge of a picture [px].
-inline constexpr int kMaxImageSize = 992;
-
 /// Draws the world through the pan-tilt camera: perspective-correct mip-mapped textures, one light with a soft shadow,
 /// 2x2 samples a pixel. The same bits on every run, thread count and instruction set.
 ///
 /// An instance belongs to one thread at a time; give every thread its own. Several may share a World.
 class Rasterizer {
  public:
-  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], a multiple of 16 up to
-  /// kMaxImageSize. @throws Error otherwise.
+  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], see core::isImageSize().
+  /// @throws Error otherwise.
   Rasterizer(const World& world, int image_size);
   ~Rasterizer();
   Rasterizer(Rasterizer&&) noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "early_fusion/core/options.h"
@@ -9,11 +10,13 @@ namespace early_fusion::sim {
 /// config/tasks/*.yaml: how hard an episode is (Walsman et al. 2019, sec. IV-A).
 struct Task {
   std::string name = "custom";
-  int instances = 4;  ///< objects on the counter, types drawn with repetition, at most kMaxInstances
-  int requested = 1;  ///< how many of the instances are requested
-  int steps = 48;     ///< actions in an episode
+  int instances = 4;       ///< objects on the counter, types drawn with repetition, at most kMaxInstances
+  int most_instances = 0;  ///< where it is more, each episode draws its number from [instances, most_instances]
+  int requested = 1;       ///< how many of the instances are requested
+  int steps = 48;          ///< actions in an episode
 
   core::OptionSet options();
+  int mostInstances() const { return std::max(instances, most_instances); }
   /// @throws Error when more are requested than there are.
   void validate(const std::string& source) const;
 };
@@ -23,5 +26,8 @@ inline constexpr int kMaxInstances = 32;
 /// @param name_or_file simple, medium, hard (config/tasks/NAME.yaml in the share folder) or a YAML file's path.
 /// @throws Error naming file, key and value, or the known names.
 Task loadTask(const std::string& name_or_file);
+
+/// The task with scenes of up to `most` instances, too.
+Task withUpTo(int most, Task task);
 
 }  // namespace early_fusion::sim
