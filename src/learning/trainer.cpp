@@ -19,8 +19,8 @@ core::OptionSet TrainingOptions::options() {
   set.add("trajectories", trajectories, 1, 100000000, "trajectories", "how many to roll out and learn from in all");
   set.add(
       "most_instances", most_instances, 0, sim::kMaxInstances, "",
-      "where it is more than the task's instances, each episode that is learnt from draws its number of objects from "
-      "one to the other; the policy is scored on the task as it is");
+      "objects on the counter in episodes that are learnt from, drawn from the task's number to these; the policy is "
+      "scored on the task as it is. 0: learnt from as it is, too");
   set.add("trajectories_per_round", trajectories_per_round, 1, 100000, "trajectories",
           "new ones before the policy is trained");
   set.add("window", window, 1, 100000, "trajectories", "the most recent ones that are trained on");
@@ -61,11 +61,10 @@ constexpr char kFirstMoment[] = "checkpoint.adam.first_moment";
 constexpr char kSecondMoment[] = "checkpoint.adam.second_moment";
 constexpr char kLearnerParameters[] = "checkpoint.learner.parameters";  // of the weights before averaging
 constexpr char kLearnerBuffers[] = "checkpoint.learner.buffers";
-constexpr char kEpisodes[] = "checkpoint.window.episodes";  // (trajectories)
-constexpr char kActions[] = "checkpoint.window.actions";    // (trajectories, steps)
-constexpr char kBrightness[] =
-    "checkpoint.window.brightness";                  // (trajectories) of the first frame, the sum of its bytes
-constexpr char kCounters[] = "checkpoint.counters";  // trajectories, new ones, rounds, Adam's steps
+constexpr char kEpisodes[] = "checkpoint.window.episodes";    // (trajectories)
+constexpr char kActions[] = "checkpoint.window.actions";      // (trajectories, steps)
+constexpr char kChecksums[] = "checkpoint.window.checksums";  // (trajectories)
+constexpr char kCounters[] = "checkpoint.counters";           // trajectories, new ones, rounds, Adam's steps
 
 nn::AdamOptions adamOptions(const TrainingOptions& options) {
   nn::AdamOptions adam;
@@ -73,10 +72,22 @@ nn::AdamOptions adamOptions(const TrainingOptions& options) {
   return adam;
 }
 
-std::int64_t brightness(const Trajectory& trajectory) {
-  if (trajectory.steps.empty()) return 0;
+/// Of what other meshes, another URDF or another program would most likely change: the first picture, and of every step
+/// the expert's label and what is nearest in the cone.
+std::int64_t checksum(const Trajectory& trajectory) {
   const std::vector<std::uint8_t>& frame = *trajectory.steps.front().frame;
-  return std::accumulate(frame.begin(), frame.end(), std::int64_t{0});
+  auto sum = std::accumulate(frame.begin(), frame.end(), std::uint64_t{0});
+  for (const TrajectoryStep& step : trajectory.steps) {
+    sum = 31 * (31 * sum + static_cast<std::uint64_t>(step.label.action)) +
+          static_cast<std::uint64_t>(step.nearest_item + 1);
+  }
+  return static_cast<std::int64_t>(sum);
+}
+
+std::vector<std::int64_t> checksums(const std::deque<Trajectory>& window) {
+  std::vector<std::int64_t> sums;
+  for (const Trajectory& trajectory : window) sums.push_back(checksum(trajectory));
+  return sums;
 }
 
 }  // namespace
@@ -258,17 +269,16 @@ nn::WeightsFile Trainer::save() const {
     file.tensors[kLearnerBuffers] = storeFloats(learner_->parameters().buffers());
   }
   const auto steps = window_.empty() ? 0 : static_cast<std::int64_t>(window_.front().steps.size());
-  std::vector<std::int64_t> episodes, brightnesses;
+  std::vector<std::int64_t> episodes;
   std::vector<std::uint8_t> actions;
   for (const Trajectory& trajectory : window_) {
     episodes.push_back(static_cast<std::int64_t>(trajectory.episode));
-    brightnesses.push_back(brightness(trajectory));
     for (const TrajectoryStep& step : trajectory.steps) actions.push_back(static_cast<std::uint8_t>(step.action));
   }
   file.tensors[kFirstMoment] = storeFloats(adam_.firstMoment());
   file.tensors[kSecondMoment] = storeFloats(adam_.secondMoment());
   file.tensors[kEpisodes] = storeIntegers(episodes);
-  file.tensors[kBrightness] = storeIntegers(brightnesses);
+  file.tensors[kChecksums] = storeIntegers(checksums(window_));
   file.tensors[kActions] = storeBytes(actions, {static_cast<std::int64_t>(episodes.size()), steps});
   file.tensors[kCounters] = storeIntegers({static_cast<std::int64_t>(trajectories_seen_), new_trajectories_,
                                            static_cast<std::int64_t>(rounds_), adam_.stepCount()});
@@ -300,22 +310,22 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   new_trajectories_ = static_cast<int>(counters[1]);
   rounds_ = counters[2];
   const std::vector<std::int64_t> episodes = loadIntegers(file, kEpisodes, source);
+  const std::vector<std::int64_t> sums = loadIntegers(file, kChecksums, source);
   const std::vector<std::vector<core::Action>> actions = loadActions(file, kActions, source);
-  if (actions.size() != episodes.size() || static_cast<int>(episodes.size()) > options_.window) {
-    throw core::Error(source + ": tensor " + kActions + " has " + std::to_string(actions.size()) +
-                      " trajectories and " + kEpisodes + " " + std::to_string(episodes.size()) +
-                      "; both should be those of the window, at most " + std::to_string(options_.window) +
-                      "; the file is damaged");
+  if (actions.size() != episodes.size() || sums.size() != episodes.size() ||
+      static_cast<int>(episodes.size()) > options_.window) {
+    throw core::Error(source + ": tensor " + kActions + " has " + std::to_string(actions.size()) + " trajectories, " +
+                      kEpisodes + " " + std::to_string(episodes.size()) + " and " + kChecksums + " " +
+                      std::to_string(sums.size()) + "; all should be those of the window, at most " +
+                      std::to_string(options_.window) + "; the file is damaged");
   }
   std::vector<Trajectory> trajectories = replay(episodes, actions);
-  std::vector<std::int64_t> brightnesses;
-  for (const Trajectory& trajectory : trajectories) brightnesses.push_back(brightness(trajectory));
-  if (brightnesses != loadIntegers(file, kBrightness, source)) {
-    throw core::Error(source +
-                      ": its episodes show other pictures than when they were played: the URDF, the meshes or "
-                      "the program have changed since; resume with those of then, or start another session");
-  }
   window_.assign(std::make_move_iterator(trajectories.begin()), std::make_move_iterator(trajectories.end()));
+  if (checksums(window_) != sums) {
+    throw core::Error(source + ": its episodes are not what they were when they were played: the URDF, the meshes or " +
+                      "the program have changed since, or the simulator's machine has others; resume with those of " +
+                      "then, or start another session");
+  }
 }
 
 }  // namespace early_fusion::learning

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
@@ -58,7 +59,7 @@ PanTiltDriverNode::PanTiltDriverNode(const Options& options)
   action_subscriber_ =
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
   request_subscriber_ = node_.subscribe<Request>(
-      kRequestTopic, 10, [this](const RequestConstPtr& request) { latest_request_ = request->header.stamp; });
+      kRequestTopic, 1, [this](const RequestConstPtr& request) { latest_request_ = request->header.stamp; });
   if (options_.use_joint_states) {
     joint_subscriber_ = node_.subscribe<sensor_msgs::JointState>(
         kJointStatesTopic, 1, [this](const sensor_msgs::JointStateConstPtr& states) { onJointStates(*states); });
@@ -80,7 +81,10 @@ void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
 
 void PanTiltDriverNode::onAction(const Action& message) {
   if (!message.header.stamp.isZero() && message.header.stamp < latest_request_) {
-    return health_.drop("late action", message.name + " answers an image that is no longer asked about");
+    std::ostringstream detail;
+    detail << message.name << " answers the image of " << message.header.stamp << ", but that of " << latest_request_
+           << " is asked about; raise answer_timeout of request_node where the policy needs longer";
+    return health_.drop("late action", detail.str());
   }
   if (!target_) {
     return health_.drop("action too early", "no joint states of '" + rig_.panJoint() + "' and '" + rig_.tiltJoint() +

@@ -34,13 +34,15 @@ bool RolloutRecorder::wants(const Scene& scene) const {
 }
 
 void RolloutRecorder::begin(const Scene& scene) {
-  SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
-  const int instances = static_cast<int>(start.instances.size());
-  if (instances < task_.instances || instances > task_.mostInstances()) {
-    throw core::Error(stepName(scene) + ": has " + std::to_string(instances) + " objects on the counter; expected " +
-                      std::to_string(task_.instances) + " to " + std::to_string(task_.mostInstances()));
+  const SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
+  sim::EpisodeSetup setup = sim::sampleEpisode(world_, task_, plan_.seed, scene.episode);
+  if (start.instances != setup.instances || start.state.request != setup.request ||
+      start.state.orientation != setup.orientation) {
+    throw core::Error(
+        stepName(scene) + ": is not the episode of task '" + task_.name + "', seed " + std::to_string(plan_.seed) +
+        ", with up to " + std::to_string(task_.mostInstances()) +
+        " objects; another goal is being played, or the simulator has other task, world, object or URDF " + "files");
   }
-  sim::EpisodeSetup setup{std::move(start.instances), std::move(start.state.request), start.state.orientation};
   sim::Episode episode(world_, task_, std::move(setup));
   learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),
                                         plan_.teacher);

@@ -72,11 +72,10 @@ std::vector<Instance> sampleInstances(const World& world, const Task& task, core
     most = std::max(most, placed.size());
   }
   std::ostringstream text;
-  text << "only " << most << " of the " << count << " instances of task '" << task.name << "' fit on the "
-       << world.options.placement_width << " x " << world.options.placement_depth << " m of the counter, "
-       << world.options.clearance
-       << " m apart; lower the task's instances, or most_instances in training, or clearance, "
-       << "or raise placement_width or placement_depth";
+  text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
+       << world.options.placement_depth << " m of the counter, " << world.options.clearance
+       << " m apart; lower instances or most_instances of task '" << task.name
+       << "', or the world's clearance, or raise placement_width or placement_depth";
   throw core::Error(text.str());
 }
 

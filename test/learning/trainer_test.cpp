@@ -407,19 +407,27 @@ TEST(Trainer, ACheckpointOfOtherItemsOrWithPartsThatDontFitIsRefused) {
   EXPECT_NE(restoreError(none).find("checkpoint.window.actions has 0 trajectories"), std::string::npos);
 }
 
-TEST(Trainer, EpisodesThatLookDifferentWhenPlayedAgainAreRefused) {
+TEST(Trainer, EpisodesThatAreNotWhatTheyWereWhenPlayedAgainAreRefused) {
   const auto trainer = makeTrainer();
   runRound(*trainer);
-  const auto play = [](const std::vector<std::int64_t>& episodes,
-                       const std::vector<std::vector<core::Action>>& actions) {
-    std::vector<Trajectory> window = replay(episodes, actions);
-    std::vector<std::uint8_t> frame = *window.back().steps.front().frame;
-    frame[0] ^= 1;
-    window.back().steps.front().frame = std::make_shared<const std::vector<std::uint8_t>>(frame);
-    return window;
+  const auto error = [&](const std::function<void(TrajectoryStep&)>& change) {
+    return restoreError(
+        trainer->save(), tinyVocabulary(),
+        [&](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
+          std::vector<Trajectory> window = replay(episodes, actions);
+          change(window.back().steps.front());
+          return window;
+        });
   };
-  const std::string error = restoreError(trainer->save(), tinyVocabulary(), play);
-  EXPECT_NE(error.find("broken.safetensors: its episodes show other pictures"), std::string::npos) << error;
+  const std::string refused = "broken.safetensors: its episodes are not what they were";
+  EXPECT_EQ(error([](TrajectoryStep&) {}), "accepted");
+  EXPECT_EQ(error([](TrajectoryStep& step) { ++step.nearest_item; }).find(refused), 0u);
+  EXPECT_EQ(error([](TrajectoryStep& step) {
+              std::vector<std::uint8_t> frame = *step.frame;
+              frame[0] ^= 1;
+              step.frame = std::make_shared<const std::vector<std::uint8_t>>(frame);
+            }).find(refused),
+            0u);
 }
 
 TEST(Trainer, ACheckpointWithoutItsTensorsIsAnErrorThatNamesTheMissingOne) {

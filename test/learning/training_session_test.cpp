@@ -77,9 +77,12 @@ TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
     RolloutRunner(*world(), task, seed).run(episode, 1, *agent, true, [&](Trajectory t) { trajectory = std::move(t); });
     return *trajectory;
   };
+  int crowded = 0;
   for (const Trajectory& learnt : session.trainer().window()) {
     EXPECT_EQ(*learnt.steps[0].frame, *played(session.trainingTask(), varied.seed, learnt.episode).steps[0].frame);
+    crowded += *learnt.steps[0].frame != *played(session.task(), varied.seed, learnt.episode).steps[0].frame;
   }
+  EXPECT_GT(crowded, 0);
   for (const EpisodeOutcome& outcome : evaluation.outcomes) {
     EXPECT_EQ(outcome.agreement, played(session.task(), kHeldOutSeed, outcome.episode).agreement());
   }
@@ -168,6 +171,20 @@ TEST(SessionOptions, EveryShippedPresetLoads) {
     EXPECT_NO_THROW(resolveSessionOptions({{"preset", entry.path().stem().string()}}, "test")) << entry.path();
   }
   EXPECT_THROW(resolveSessionOptions({{"preset", "slow"}}, "test"), core::Error);
+}
+
+TEST(SessionOptions, EveryOneIsAnArgumentOfTrainLaunch) {
+  SessionOptions options;
+  const core::OptionSet set = options.options();
+  const std::string launch = core::readFile(fs::path(core::shareFolder()) / "launch" / "train.launch");
+  for (const core::Option& option : set.options()) {
+    if (option.name == "kind") continue;  // there is but one
+    EXPECT_NE(launch.find("<arg name=\"" + option.name + "\""), std::string::npos) << option.name;
+    const std::string name = "name=\"" + option.name + "\" ", value = "value=\"$(arg " + option.name + ")\"";
+    EXPECT_TRUE(launch.find(name + value) != std::string::npos ||
+                launch.find(name + "type=\"str\" " + value) != std::string::npos)
+        << option.name;
+  }
 }
 
 TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {

@@ -131,12 +131,12 @@ TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTh
   const RequestConstPtr first = nextRequest();
   const RequestConstPtr second = nextRequest();
   ASSERT_TRUE(first && second);
-  spinFor(0.2);
-  act("PAN_RIGHT", first->header);
-  spinFor(0.2);
-  EXPECT_NEAR(*pan_, limit - sim::kStepRad, 1e-9);
+  const double tilt = *tilt_;
+  spinFor(0.5);  // the driver has the requests over a connection of its own
+  act("TILT_DOWN", first->header);
   act("PAN_RIGHT", second->header);
   EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + 2 * sim::kStepRad) < 1e-9; }));
+  EXPECT_NEAR(*tilt_, tilt, 1e-9);
 }
 
 }  // namespace

@@ -60,6 +60,14 @@ TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {
   for (const auto& [instances, count] : counts) EXPECT_GT(count, 60) << instances;
 }
 
+TEST(Scene, ATaskOfOneNumberOfInstancesIsTheSameWhateverElseIsAsked) {
+  for (const int most : {0, 3, 4}) {
+    const EpisodeSetup a = sampleEpisode(world(), makeTask(4, 1), 1, 7);
+    const EpisodeSetup b = sampleEpisode(world(), withUpTo(most, makeTask(4, 1)), 1, 7);
+    EXPECT_TRUE(a.instances == b.instances && a.request == b.request && a.orientation == b.orientation) << most;
+  }
+}
+
 TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
   std::set<int> items, pans, tilts;
   bool repeated = false;
@@ -126,7 +134,7 @@ TEST(Scene, SaysHowManyFittedOnATooSmallCounter) {
   small.options.placement_depth = 0.3;
   small.placement = {0.6, 0.9, -0.15, 0.15, 0.9};
   const std::string error = errorOf([&] { sampleEpisode(small, makeTask(30, 1), 1, 1); });
-  EXPECT_NE(error.find("of the 30 instances of task 'custom' fit on the 0.3 x 0.3 m"), std::string::npos) << error;
+  EXPECT_NE(error.find("of 30 objects fit on the 0.3 x 0.3 m"), std::string::npos) << error;
   EXPECT_EQ(error.find("only 0 of"), std::string::npos) << error;
 }
 

@@ -10,6 +10,7 @@ namespace early_fusion::core {
 /// [px].
 inline constexpr int kImageSizeStep = 16;
 inline constexpr int kMaxImageSize = 992;
+static_assert(kImageSizeStep == 16 && kMaxImageSize == 992, "as kImageSizes tells");
 inline constexpr char kImageSizes[] = "a multiple of 16 in [16, 992]";
 
 inline bool isImageSize(int size) {

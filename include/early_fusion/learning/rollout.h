@@ -16,7 +16,7 @@ namespace early_fusion::learning {
 /// The trajectories are the same bits for any number of threads and episodes in lockstep.
 class RolloutRunner {
  public:
-  /// `world` must outlive the runner. @param seed of the session: (seed, number) is an episode.
+  /// `world` must outlive the runner. @param seed of the session: (task, seed, number) is an episode.
   RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher = Teacher::kGreedy);
 
   const sim::Task& task() const { return task_; }

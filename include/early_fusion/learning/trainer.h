@@ -83,7 +83,7 @@ class Trainer {
 
   /// Goes on from what save() gave, bit for bit.
   /// @throws Error naming `source` and the tensor or key that is missing or doesn't fit, or where the replayed episodes
-  /// don't begin with the pictures of then.
+  /// are not what they were.
   void restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay);
 
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }

@@ -17,8 +17,8 @@ namespace early_fusion::nodes {
 
 /// Turns the policy's actions into position commands for a real pan-tilt unit: 2 degrees a move, within the URDF's
 /// joint limits, from where the joint states say that it is. An action that answers an older image than the latest
-/// request is dropped: the camera would move while the policy decides on what it sees now. One without a stamp, as
-/// typed by hand, is carried out.
+/// request is dropped: the policy is deciding on what the camera sees now. One without a stamp, as typed by hand, is
+/// carried out.
 class PanTiltDriverNode {
  public:
   struct Options {

@@ -17,6 +17,10 @@ struct Instance {
   double x = 0;      ///< [m], world frame
   double y = 0;      ///< [m], world frame
   double theta = 0;  ///< [rad] about the world's z
+
+  bool operator==(const Instance& other) const {
+    return item == other.item && x == other.x && y == other.y && theta == other.theta;
+  }
 };
 
 /// Bit i is set while instance i is still on the counter.
@@ -35,7 +39,7 @@ Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance);
 /// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
 EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random);
 
-/// The episode that a session of this seed plays as its number `episode`.
+/// The episode of this task that a session of this seed plays as its number `episode`.
 EpisodeSetup sampleEpisode(const World& world, const Task& task, std::uint64_t seed, std::uint64_t episode);
 
 }  // namespace early_fusion::sim
