@@ -6,8 +6,7 @@
 
 namespace early_fusion::core {
 
-/// The edge of a square picture that is drawn and decided from is a multiple of kImageSizeStep up to kMaxImageSize
-/// [px].
+/// The edge of a square picture [px] is a multiple of kImageSizeStep up to kMaxImageSize.
 inline constexpr int kImageSizeStep = 16;
 inline constexpr int kMaxImageSize = 992;
 static_assert(kImageSizeStep == 16 && kMaxImageSize == 992, "as kImageSizes tells");
