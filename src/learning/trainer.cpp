@@ -322,9 +322,11 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   std::vector<Trajectory> trajectories = replay(episodes, actions);
   window_.assign(std::make_move_iterator(trajectories.begin()), std::make_move_iterator(trajectories.end()));
   if (checksums(window_) != sums) {
-    throw core::Error(source + ": its episodes are not what they were when they were played: the URDF, the meshes or " +
-                      "the program have changed since, or the simulator's machine has others; resume with those of " +
-                      "then, or start another session");
+    throw core::Error(
+        source +
+        ": its episodes are not what they were when they were played: the URDF, the meshes or the program "
+        "have changed since, or the simulator's machine has others; resume with those of then, or start "
+        "another session");
   }
 }
 

@@ -111,9 +111,6 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " but the world draws " + std::to_string(world_->options.image_size) +
                       " pixels; set both to the same");
   }
-  sim::Task fullest = trainingTask();  // what doesn't fit on the counter is better known now than in an hour
-  fullest.instances = fullest.mostInstances();
-  sim::sampleEpisode(*world_, fullest, options_.seed, 0);
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
   std::error_code unreachable;  // as it will be to the one who writes there, who tells
   const bool there = std::filesystem::exists(path(kCheckpoint), unreachable);

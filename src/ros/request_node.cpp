@@ -56,8 +56,7 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   if (settled_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
   if (waiting_)
     health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
-                                           "; is the policy running, with weights that know the items? Where it needs "
-                                           "longer, raise answer_timeout");
+                                           "; is the policy running, with weights that know the items?");
   asked_.header = image->header;
   asked_.episode = 0;
   asked_.step = step_;

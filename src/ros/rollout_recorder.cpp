@@ -41,7 +41,7 @@ void RolloutRecorder::begin(const Scene& scene) {
     throw core::Error(
         stepName(scene) + ": is not the episode of task '" + task_.name + "', seed " + std::to_string(plan_.seed) +
         ", with up to " + std::to_string(task_.mostInstances()) +
-        " objects; another goal is being played, or the simulator has other task, world, object or URDF " + "files");
+        " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
   sim::Episode episode(world_, task_, std::move(setup));
   learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),

@@ -74,8 +74,8 @@ std::vector<Instance> sampleInstances(const World& world, const Task& task, core
   std::ostringstream text;
   text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
        << world.options.placement_depth << " m of the counter, " << world.options.clearance
-       << " m apart; lower instances or most_instances of task '" << task.name
-       << "', or the world's clearance, or raise placement_width or placement_depth";
+       << " m apart; lower instances of task '" << task.name
+       << "', most_instances in training or the world's clearance, or raise placement_width or placement_depth";
   throw core::Error(text.str());
 }
 

@@ -11,19 +11,12 @@ core::OptionSet Task::options() {
   core::OptionSet set("task");
   set.add("name", name, "what the task is called in logs and metadata; the file's name when left out");
   set.add("instances", instances, 1, kMaxInstances, "", "objects on the counter, types drawn with repetition");
-  set.add("most_instances", most_instances, 0, kMaxInstances, "",
-          "each episode draws its number of objects from instances to these; 0: it is always instances");
   set.add("requested", requested, 1, kMaxInstances, "", "how many of the instances are requested");
   set.add("steps", steps, 1, 100000, "", "actions in an episode");
   return set;
 }
 
 void Task::validate(const std::string& source) const {
-  if (most_instances != 0 && most_instances < instances) {
-    throw core::Error(source + ": most_instances is " + std::to_string(most_instances) +
-                      "; it must be at least instances, " + std::to_string(instances) +
-                      ", or 0 for no more than those");
-  }
   if (requested <= instances) return;
   throw core::Error(source + ": requested is " + std::to_string(requested) + "; it must be at most instances, " +
                     std::to_string(instances));

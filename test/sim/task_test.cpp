@@ -60,11 +60,6 @@ TEST(Task, CannotRequestMoreThanThereIs) {
   EXPECT_TRUE(mentions(error, "mine.yaml: requested is 3; it must be at most instances, 2")) << error;
 }
 
-TEST(Task, CannotHaveFewerAtMostThanAlways) {
-  const std::string error = errorOfTask("instances: 6\nmost_instances: 5\n");
-  EXPECT_TRUE(mentions(error, "mine.yaml: most_instances is 5; it must be at least instances, 6, or 0")) << error;
-}
-
 TEST(Task, WithUpToSoManyInstancesHasNoFewerThanBefore) {
   EXPECT_EQ(withUpTo(12, loadTask("simple")).instances, 4);
   EXPECT_EQ(withUpTo(12, loadTask("simple")).mostInstances(), 12);

@@ -10,13 +10,13 @@ namespace early_fusion::sim {
 struct Task {
   std::string name = "custom";
   int instances = 4;       ///< objects on the counter, types drawn with repetition, at most kMaxInstances
-  int most_instances = 0;  ///< each episode draws its number of objects from instances to these; 0: no more
+  int most_instances = 0;  ///< no option, see withUpTo(): each episode draws its number from instances to these
   int requested = 1;       ///< how many of the instances are requested
   int steps = 48;          ///< actions in an episode
 
   core::OptionSet options();
   int mostInstances() const { return most_instances > instances ? most_instances : instances; }
-  /// @throws Error when more are requested than there are, or there are to be fewer at most than always.
+  /// @throws Error when more are requested than there are.
   void validate(const std::string& source) const;
 };
 
@@ -26,7 +26,8 @@ inline constexpr int kMaxInstances = 32;
 /// @throws Error naming file, key and value, or the known names.
 Task loadTask(const std::string& name_or_file);
 
-/// The task with scenes of up to `most` instances, too; the task itself where that is no more than it has.
+/// The task with scenes of up to `most` instances, too, to learn from; the task itself where that is no more than it
+/// has.
 Task withUpTo(int most, Task task);
 
 }  // namespace early_fusion::sim
