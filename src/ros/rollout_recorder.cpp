@@ -35,15 +35,13 @@ bool RolloutRecorder::wants(const Scene& scene) const {
 
 void RolloutRecorder::begin(const Scene& scene) {
   const SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
-  sim::EpisodeSetup setup = sim::sampleEpisode(world_, task_, plan_.seed, scene.episode);
-  if (start.instances != setup.instances || start.state.request != setup.request ||
-      start.state.orientation != setup.orientation) {
+  sim::Episode episode(world_, task_, sim::sampleEpisode(world_, task_, plan_.seed, scene.episode));
+  if (start.instances != episode.setup().instances || !sameState(start.state, episode.state())) {
     throw core::Error(
         stepName(scene) + ": is not the episode of task '" + task_.name + "', seed " + std::to_string(plan_.seed) +
         ", with up to " + std::to_string(task_.mostInstances()) +
         " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
-  sim::Episode episode(world_, task_, std::move(setup));
   learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),
                                         plan_.teacher);
   recording_.emplace(Recording{scene.episode, std::move(episode), std::move(recorder), ::ros::Time(), ""});

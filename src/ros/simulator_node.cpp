@@ -51,11 +51,7 @@ void SimulatorNode::onGoal() {
   goal_.end = goal->first_episode + goal->episodes;
   try {
     if (goal->episodes == 0) throw core::Error("episodes is 0; ask for at least 1");
-    if (goal->most_instances > sim::kMaxInstances) {
-      throw core::Error("most_instances is " + std::to_string(goal->most_instances) + "; there may be " +
-                        std::to_string(sim::kMaxInstances) + " at most");
-    }
-    const sim::Task task = sim::withUpTo(static_cast<int>(goal->most_instances), sim::loadTask(goal->task));
+    const sim::Task task = sim::withUpTo(goal->most_instances, sim::loadTask(goal->task));
     begin(Driver::kGoal, task, goal->seed, goal->first_episode);
   } catch (const core::Error& error) {
     stop();

@@ -31,8 +31,12 @@ Task loadTask(const std::string& name_or_file) {
   return task;
 }
 
-Task withUpTo(int most, Task task) {
-  if (most > task.mostInstances()) task.most_instances = most;
+Task withUpTo(std::int64_t most, Task task) {
+  if (most > kMaxInstances) {
+    throw core::Error("most_instances is " + std::to_string(most) + "; there may be " + std::to_string(kMaxInstances) +
+                      " at most");
+  }
+  if (most > task.mostInstances()) task.most_instances = static_cast<int>(most);
   return task;
 }
 

@@ -32,6 +32,13 @@ TrainingOptions tinyTraining() {
   return options;
 }
 
+TrainingOptions trainingOnOwnRequests(int trajectories) {
+  TrainingOptions options = tinyTraining();
+  options.trajectories = trajectories;
+  options.requests_per_frame = 1;
+  return options;
+}
+
 std::unique_ptr<Trainer> makeTrainer(const TrainingOptions& options = tinyTraining()) {
   return std::make_unique<Trainer>(tinyPolicy(), options, tinyVocabulary(), 3);
 }
@@ -88,10 +95,7 @@ TEST(Trainer, TheWindowKeepsTheMostRecentTrajectories) {
 }
 
 TEST(Trainer, LearnsLabelsThatTheFramesShow) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 400;
-  options.requests_per_frame = 1;
-  const auto trainer = makeTrainer(options);
+  const auto trainer = makeTrainer(trainingOnOwnRequests(400));
   const double first = runRound(*trainer).loss;
   double last = first;
   while (!trainer->finished()) last = runRound(*trainer).loss;
@@ -174,9 +178,7 @@ TEST(Trainer, LearningRateFallsAlongACosineBetweenTheTwoRates) {
 /// The loss that is left when every second step repeats the one before it with IDLE as its label, and the others'
 /// label is COLLECT: random frames don't tell them apart. @param taken by the policy in the repeats.
 double lossWithRepeats(core::Action taken) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 200;
-  options.requests_per_frame = 1;
+  TrainingOptions options = trainingOnOwnRequests(200);
   options.skip_repeats = true;
   const auto trainer = makeTrainer(options);
   return trainOn(*trainer, [&](Trajectory& trajectory) {
@@ -207,9 +209,17 @@ TEST(Trainer, LearnsEveryRequestOfAFrame) {
   EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
 }
 
+/// Of an action when item 0 is requested.
+double probability(Trainer& trainer, model::Observation observation, core::Action action) {
+  const core::Request request = {0};
+  observation.request = &request;
+  model::Probabilities probabilities;
+  trainer.policy().predict({observation}, probabilities);
+  return probabilities(0, static_cast<int>(action));
+}
+
 /// Over the frames of some trajectories, each seen three times.
 double meanProbability(Trainer& trainer, core::Action action) {
-  const core::Request request = {0};
   double sum = 0;
   int count = 0;
   for (std::uint64_t episode = 1000; episode < 1020; ++episode) {
@@ -217,10 +227,7 @@ double meanProbability(Trainer& trainer, core::Action action) {
     for (const TrajectoryStep& step : trajectory.steps) {
       model::Observation observation;
       observation.frames.fill(step.frame->data());
-      observation.request = &request;
-      model::Probabilities probabilities;
-      trainer.policy().predict({observation}, probabilities);
-      sum += probabilities(0, static_cast<int>(action));
+      sum += probability(trainer, observation, action);
       ++count;
     }
   }
@@ -230,9 +237,7 @@ double meanProbability(Trainer& trainer, core::Action action) {
 /// Trains where, at random, half of the frames ask for COLLECT and half for one more PAN_LEFT before it.
 /// @return the mean probability of PAN_LEFT when the policy sees one of those frames three times.
 double panAfterVainCollects(bool vain_collects) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 400;
-  options.requests_per_frame = 1;
+  TrainingOptions options = trainingOnOwnRequests(400);
   options.vain_collects = vain_collects;
   const auto trainer = makeTrainer(options);
   trainOn(*trainer, [&](Trajectory& trajectory) {
@@ -254,9 +259,7 @@ TEST(Trainer, LearnsNotToRepeatACollectThatChangedNothing) {
 /// it would take the wrong thing, or, where the camera is at rest, it has just been in vain.
 /// @return the action's mean probability.
 double probabilityWhereItMayDoHarm(core::Action action, double unlikelihood, bool at_rest) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 400;
-  options.requests_per_frame = 1;
+  TrainingOptions options = trainingOnOwnRequests(400);
   options.unlikelihood = unlikelihood;
   const auto trainer = makeTrainer(options);
   const core::Request request = {0};
@@ -278,10 +281,7 @@ double probabilityWhereItMayDoHarm(core::Action action, double unlikelihood, boo
     for (int age = 0; age < model::kHistory; ++age) {
       observation.frames[age] = trajectory.steps[at_rest ? 0 : model::kHistory - 1 - age].frame->data();
     }
-    observation.request = &request;
-    model::Probabilities probabilities;
-    trainer->policy().predict({observation}, probabilities);
-    sum += probabilities(0, static_cast<int>(action));
+    sum += probability(*trainer, observation, action);
   }
   return sum / 40;
 }
@@ -299,9 +299,7 @@ TEST(Trainer, UnlikelihoodKeepsThePolicyFromWhatMayDoHarm) {
 /// Trains where the label is PAN_LEFT and TILT_UP is as good, whatever the frame shows.
 /// @return the mean of their probabilities.
 std::pair<double, double> probabilitiesOfTwoOptimalActions(double soft_labels) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 200;
-  options.requests_per_frame = 1;
+  TrainingOptions options = trainingOnOwnRequests(200);
   options.soft_labels = soft_labels;
   const auto trainer = makeTrainer(options);
   const core::Request request = {0};
@@ -325,9 +323,7 @@ TEST(Trainer, SoftLabelsShareATargetAmongTheOptimalActions) {
 /// Trains where, at random, one of seven frames asks for COLLECT and the others for PAN_LEFT.
 /// @return the mean probability of COLLECT.
 double probabilityOfTheRareAction(double balance) {
-  TrainingOptions options = tinyTraining();
-  options.trajectories = 200;
-  options.requests_per_frame = 1;
+  TrainingOptions options = trainingOnOwnRequests(200);
   options.balance = balance;
   const auto trainer = makeTrainer(options);
   const core::Request request = {0};

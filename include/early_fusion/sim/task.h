@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "early_fusion/core/options.h"
@@ -27,7 +28,7 @@ inline constexpr int kMaxInstances = 32;
 Task loadTask(const std::string& name_or_file);
 
 /// The task with scenes of up to `most` instances, too, to learn from; the task itself where that is no more than it
-/// has.
-Task withUpTo(int most, Task task);
+/// has. @throws Error when it is more than kMaxInstances.
+Task withUpTo(std::int64_t most, Task task);
 
 }  // namespace early_fusion::sim
