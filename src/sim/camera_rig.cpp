@@ -1,5 +1,6 @@
 #include "early_fusion/sim/camera_rig.h"
 
+#include <cassert>
 #include <cmath>
 #include <sstream>
 
@@ -119,27 +120,33 @@ CameraRig CameraRig::load(const std::string& urdf_file, const std::string& pan_j
   OrientationLattice& lattice = rig.lattice_;
   readSteps(*pan, urdf_file, &lattice.lowest.pan, &lattice.highest.pan);
   readSteps(*tilt, urdf_file, &lattice.lowest.tilt, &lattice.highest.tilt);
-  rig.world_from_pan_ = fixedChain(*model, model->getRoot()->name, pan->parent_link_name, "the root link", urdf_file) *
-                        toEigen(pan->parent_to_joint_origin_transform);
-  rig.pan_from_tilt_ =
+  const Eigen::Isometry3d world_from_pan =
+      fixedChain(*model, model->getRoot()->name, pan->parent_link_name, "the root link", urdf_file) *
+      toEigen(pan->parent_to_joint_origin_transform);
+  const Eigen::Isometry3d pan_from_tilt =
       fixedChain(*model, pan->child_link_name, tilt->parent_link_name, "joint '" + pan_joint + "'", urdf_file) *
       toEigen(tilt->parent_to_joint_origin_transform);
-  rig.tilt_from_camera_ =
+  const Eigen::Isometry3d tilt_from_camera =
       fixedChain(*model, tilt->child_link_name, optical_frame, "joint '" + tilt_joint + "'", urdf_file);
-  rig.pan_axis_ = toEigen(pan->axis).normalized();
-  rig.tilt_axis_ = toEigen(tilt->axis).normalized();
+  const Eigen::Vector3d pan_axis = toEigen(pan->axis).normalized();
+  const Eigen::Vector3d tilt_axis = toEigen(tilt->axis).normalized();
 
   const int middle_tilt = (lattice.lowest.tilt + lattice.highest.tilt) / 2;
-  const Eigen::Matrix3d tilt_camera = rig.tilt_from_camera_.linear();
-  const Eigen::Matrix3d pan_camera = rig.pan_from_tilt_.linear() * turn(middle_tilt, rig.tilt_axis_) * tilt_camera;
-  checkDirection(rig.pan_axis_, pan_camera.col(2), -pan_camera.col(0), pan_joint, "left", urdf_file);
-  checkDirection(rig.tilt_axis_, tilt_camera.col(2), tilt_camera.col(1), tilt_joint, "down", urdf_file);
+  const Eigen::Matrix3d tilt_camera = tilt_from_camera.linear();
+  const Eigen::Matrix3d pan_camera = pan_from_tilt.linear() * turn(middle_tilt, tilt_axis) * tilt_camera;
+  checkDirection(pan_axis, pan_camera.col(2), -pan_camera.col(0), pan_joint, "left", urdf_file);
+  checkDirection(tilt_axis, tilt_camera.col(2), tilt_camera.col(1), tilt_joint, "down", urdf_file);
+  for (int i = 0; i < lattice.size(); ++i) {
+    const Orientation orientation = lattice.at(i);
+    rig.world_from_camera_.push_back(world_from_pan * turn(orientation.pan, pan_axis) * pan_from_tilt *
+                                     turn(orientation.tilt, tilt_axis) * tilt_from_camera);
+  }
   return rig;
 }
 
-Eigen::Isometry3d CameraRig::worldFromCamera(Orientation orientation) const {
-  return world_from_pan_ * turn(orientation.pan, pan_axis_) * pan_from_tilt_ * turn(orientation.tilt, tilt_axis_) *
-         tilt_from_camera_;
+const Eigen::Isometry3d& CameraRig::worldFromCamera(Orientation orientation) const {
+  assert(lattice_.contains(orientation));
+  return world_from_camera_[lattice_.index(orientation)];
 }
 
 }  // namespace early_fusion::sim

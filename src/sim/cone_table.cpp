@@ -82,7 +82,7 @@ ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
   offsets_.push_back(0);
   for (int index = 0; index < lattice_.size(); ++index) {
     const Orientation orientation = lattice_.at(index);
-    const Eigen::Isometry3d world_from_camera = world.rig.worldFromCamera(orientation);
+    const Eigen::Isometry3d& world_from_camera = world.rig.worldFromCamera(orientation);
     const Eigen::Vector3d axis = world_from_camera.linear().col(2);
     const std::vector<View>& seen = views.from(world_from_camera.translation());
     in_cone.clear();

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
+#include <utility>
+
+#include "early_fusion/sim/placed_hull.h"
 
 namespace early_fusion::sim {
 
 namespace {
 
 constexpr int kDirections = 4000;
+constexpr double kCollisionTolerance = 0.00015;  // [m]
 
 /// The axes, then a Fibonacci spiral: directions spread evenly over the sphere.
 std::vector<Eigen::Vector3d> directionsAllAround() {
@@ -49,10 +54,8 @@ std::vector<Support> supportsOf(const std::vector<Eigen::Vector3d>& points) {
   return supports;
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3d> convexHullCorners(const std::vector<Eigen::Vector3d>& points, int max_corners,
-                                               double tolerance) {
+/// Few corners whose hull falls short by at most `tolerance` in the sampled directions.
+std::vector<Eigen::Vector3d> cornersBySampling(const std::vector<Eigen::Vector3d>& points, double tolerance) {
   std::vector<Support> supports = supportsOf(points);
   std::vector<Eigen::Vector3d> corners;
   const auto choose = [&](const Support& support) {
@@ -63,12 +66,51 @@ std::vector<Eigen::Vector3d> convexHullCorners(const std::vector<Eigen::Vector3d
     if (supports[axis].shortfall() > 0) choose(supports[axis]);
   }
   const auto less = [](const Support& a, const Support& b) { return a.shortfall() < b.shortfall(); };
-  while (static_cast<int>(corners.size()) < max_corners) {
+  while (true) {
     const auto worst = std::max_element(supports.begin(), supports.end(), less);
-    if (worst->shortfall() < tolerance) break;
+    if (worst->shortfall() <= tolerance) return corners;
     choose(*worst);
   }
+}
+
+/// Adds the points that lie farther than `tolerance` outside the corners' hull, the farthest first. A point's distance
+/// never grows with more corners, so an old distance is an upper bound: only the point with the largest one is
+/// measured.
+void addPointsOutside(const std::vector<Eigen::Vector3d>& points, double tolerance,
+                      std::vector<Eigen::Vector3d>& corners) {
+  std::priority_queue<std::pair<double, std::size_t>> outside;
+  const auto measure = [&outside, &points, tolerance](const PlacedHull& hull, std::size_t index) {
+    const double distance = hull.distanceTo(points[index]);
+    if (distance > tolerance) outside.emplace(distance, index);
+  };
+  PlacedHull hull(corners, Eigen::Isometry3d::Identity());
+  for (std::size_t i = 0; i < points.size(); ++i) measure(hull, i);
+  while (!outside.empty()) {
+    corners.push_back(points[outside.top().second]);
+    outside.pop();
+    hull = PlacedHull(corners, Eigen::Isometry3d::Identity());
+    for (std::size_t last = points.size(); !outside.empty() && outside.top().second != last;) {
+      last = outside.top().second;
+      outside.pop();
+      measure(hull, last);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> convexHullCorners(const std::vector<Eigen::Vector3d>& points, double tolerance) {
+  std::vector<Eigen::Vector3d> corners = cornersBySampling(points, tolerance);
+  addPointsOutside(points, tolerance, corners);
   return corners;
+}
+
+std::vector<Eigen::Vector3d> collisionHull(const TexturedMesh& mesh) {
+  std::vector<Eigen::Vector3d> points;
+  for (const MeshPart& part : mesh.parts) {
+    for (const Vertex& vertex : part.vertices) points.push_back(vertex.position.cast<double>());
+  }
+  return convexHullCorners(points, kCollisionTolerance);
 }
 
 }  // namespace early_fusion::sim

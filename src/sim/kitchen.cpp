@@ -6,6 +6,7 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/sim/convex_hull.h"
 #include "primitive_mesh.h"
 #include "urdf_file.h"
 
@@ -48,25 +49,25 @@ std::string meshFile(const std::string& name, const std::string& urdf_file) {
   return core::resolvePath(urdf_file, name);
 }
 
-TexturedMesh meshOf(const urdf::Visual& visual, const std::string& urdf_file, int max_triangles) {
-  const std::uint32_t colour = colourOf(visual);
-  switch (visual.geometry->type) {
+TexturedMesh meshOf(const urdf::Geometry& geometry, std::uint32_t colour, const std::string& urdf_file,
+                    int max_triangles) {
+  switch (geometry.type) {
     case urdf::Geometry::BOX:
-      return boxMesh(toEigen(static_cast<const urdf::Box&>(*visual.geometry).dim), colour);
+      return boxMesh(toEigen(static_cast<const urdf::Box&>(geometry).dim), colour);
     case urdf::Geometry::CYLINDER: {
-      const auto& cylinder = static_cast<const urdf::Cylinder&>(*visual.geometry);
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
       return cylinderMesh(cylinder.radius, cylinder.length, colour);
     }
     case urdf::Geometry::SPHERE:
-      return sphereMesh(static_cast<const urdf::Sphere&>(*visual.geometry).radius, colour);
+      return sphereMesh(static_cast<const urdf::Sphere&>(geometry).radius, colour);
     case urdf::Geometry::MESH:
       break;
   }
-  const auto& mesh = static_cast<const urdf::Mesh&>(*visual.geometry);
+  const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
   return loadTexturedMesh(meshFile(mesh.filename, urdf_file), toEigen(mesh.scale), max_triangles);
 }
 
-PlacementArea topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, const std::string& where) {
+HorizontalRectangle topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, const std::string& where) {
   if (!link.collision || !link.collision->geometry || link.collision->geometry->type != urdf::Geometry::BOX) {
     throw core::Error(where + " needs a collision box: its top carries the objects");
   }
@@ -81,30 +82,44 @@ PlacementArea topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_
           center.z() + half.z()};
 }
 
+/// Adds a link's collision shapes, those aside that do not rise above `counter_top` [m]: objects stand there.
+void addObstacles(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, double counter_top,
+                  const std::string& urdf_file, int max_triangles,
+                  std::vector<std::shared_ptr<const PlacedHull>>& obstacles) {
+  constexpr double kLevel = 0.001;  // [m]
+  for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+    if (!collision->geometry) continue;
+    const TexturedMesh mesh = meshOf(*collision->geometry, kLightGrey, urdf_file, max_triangles);
+    auto hull = std::make_shared<const PlacedHull>(collisionHull(mesh), world_from_link * toEigen(collision->origin));
+    if (hull->bounds().max().z() > counter_top + kLevel) obstacles.push_back(std::move(hull));
+  }
+}
+
 }  // namespace
 
 Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_link, int max_triangles) {
   const urdf::ModelInterfaceSharedPtr model = loadUrdf(urdf_file);
-  Kitchen kitchen;
-  for (const auto& [name, link] : model->links_) {
-    const Eigen::Isometry3d world_from_link = worldFromLink(*model, name, urdf_file);
-    for (const urdf::VisualSharedPtr& visual : link->visual_array) {
-      if (!visual->geometry) continue;
-      try {
-        kitchen.meshes.push_back(
-            {name, meshOf(*visual, urdf_file, max_triangles), world_from_link * toEigen(visual->origin)});
-      } catch (const core::Error& error) {
-        throw core::Error(urdf_file + ": link '" + name + "': " + error.what());
-      }
-    }
-  }
   const urdf::LinkConstSharedPtr counter = model->getLink(counter_link);
   if (!counter) {
     throw core::Error(urdf_file + ": no link '" + counter_link +
                       "'; its links are: " + core::joined(core::keys(model->links_)));
   }
+  Kitchen kitchen;
   kitchen.counter_top =
       topOf(*counter, worldFromLink(*model, counter_link, urdf_file), urdf_file + ": link '" + counter_link + "'");
+  for (const auto& [name, link] : model->links_) {
+    const Eigen::Isometry3d world_from_link = worldFromLink(*model, name, urdf_file);
+    try {
+      for (const urdf::VisualSharedPtr& visual : link->visual_array) {
+        if (!visual->geometry) continue;
+        kitchen.meshes.push_back({name, meshOf(*visual->geometry, colourOf(*visual), urdf_file, max_triangles),
+                                  world_from_link * toEigen(visual->origin)});
+      }
+      addObstacles(*link, world_from_link, kitchen.counter_top.z, urdf_file, max_triangles, kitchen.obstacles);
+    } catch (const core::Error& error) {
+      throw core::Error(urdf_file + ": link '" + name + "': " + error.what());
+    }
+  }
   return kitchen;
 }
 

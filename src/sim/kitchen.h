@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,13 +8,15 @@
 
 namespace early_fusion::sim {
 
-/// What a kitchen's URDF holds: everything to look at, and the counter's top.
+/// What a kitchen's URDF holds: everything to look at, the counter's top, and what objects must keep clear of.
 struct Kitchen {
   std::vector<FixedMesh> meshes;
-  PlacementArea counter_top;  ///< the whole top face of the counter's collision box
+  HorizontalRectangle counter_top;                           ///< the whole top face of the counter's collision box
+  std::vector<std::shared_ptr<const PlacedHull>> obstacles;  ///< World::obstacles
 };
 
-/// @param counter_link its collision geometry is a level box, parallel to the world's axes.
+/// A collision mesh stands for its convex hull, as it does in URDFs that are written for Bullet.
+/// @param counter_link its first collision geometry is a level box, parallel to the world's axes.
 /// @throws Error naming the file and the link, joint or mesh that is missing or not as it must be.
 Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_link, int max_triangles);
 

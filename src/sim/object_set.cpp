@@ -17,10 +17,8 @@ namespace early_fusion::sim {
 
 namespace {
 
-constexpr int kMaxHullCorners = 100;
-constexpr double kHullTolerance = 0.0005;  // [m]
-constexpr double kMinSize = 0.005;         // [m]
-constexpr double kMaxSize = 2.0;           // [m]
+constexpr double kMinSize = 0.005;  // [m]
+constexpr double kMaxSize = 2.0;    // [m]
 
 /// "FILE:LINE: "
 std::string place(const std::string& file, const YAML::Node& node) {
@@ -97,11 +95,7 @@ Object readObject(const YAML::Node& entry, const std::string& file, int max_tria
   }
   checkSize(object.mesh, where + object.mesh_file + ": ");
   object.mesh_origin = normalise(object.mesh);
-  std::vector<Eigen::Vector3d> points;
-  for (const MeshPart& part : object.mesh.parts) {
-    for (const Vertex& vertex : part.vertices) points.push_back(vertex.position.cast<double>());
-  }
-  object.hull = convexHullCorners(points, kMaxHullCorners, kHullTolerance);
+  object.hull = collisionHull(object.mesh);
   return object;
 }
 

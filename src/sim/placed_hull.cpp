@@ -76,6 +76,7 @@ PlacedHull::PlacedHull(const std::vector<Eigen::Vector3d>& corners, const Eigen:
   points.reserve(corners_.size());
   for (const Eigen::Vector3d& corner : corners_) {
     radius_ = std::max(radius_, (corner - center_).norm());
+    bounds_.extend(corner);
     points.push_back(toBullet(corner - center_));
   }
   shape_ = std::make_unique<btConvexHullShape>(&points[0].x(), static_cast<int>(points.size()),

@@ -20,13 +20,15 @@ class CounterTop {
  public:
   explicit CounterTop(const World& world) : world_(world) {}
 
-  /// Keeps the instance when it is clear of all others.
+  /// Keeps the instance when it is clear of all others and of the kitchen, and does not overhang too far.
   bool place(const Instance& instance) {
     PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
-    const double clearance = world_.options.clearance;
+    if (overhang(hull) > world_.options.max_overhang) return false;
+    for (const auto& obstacle : world_.obstacles) {
+      if (tooNear(hull, *obstacle)) return false;
+    }
     for (const PlacedHull& other : hulls_) {
-      const double apart = (hull.center() - other.center()).norm() - hull.radius() - other.radius();
-      if (apart < clearance && hull.distanceTo(other) < std::max(clearance, kTouching)) return false;
+      if (tooNear(hull, other)) return false;
     }
     hulls_.push_back(std::move(hull));
     return true;
@@ -35,13 +37,26 @@ class CounterTop {
  private:
   static constexpr double kTouching = 1e-6;  // [m]; with no clearance asked for, objects still must not overlap
 
+  /// How far a hull reaches over an edge of the counter's top [m]; negative where it does not.
+  double overhang(const PlacedHull& hull) const {
+    const HorizontalRectangle& top = world_.counter_top;
+    const Eigen::AlignedBox3d& box = hull.bounds();
+    return std::max(
+        {top.min_x - box.min().x(), box.max().x() - top.max_x, top.min_y - box.min().y(), box.max().y() - top.max_y});
+  }
+
+  bool tooNear(const PlacedHull& hull, const PlacedHull& other) const {
+    const double clearance = std::max(world_.options.clearance, kTouching);
+    return hull.bounds().exteriorDistance(other.bounds()) < clearance && hull.distanceTo(other) < clearance;
+  }
+
   const World& world_;
   std::vector<PlacedHull> hulls_;
 };
 
 /// Places as many of `items` as fit, in their order.
 std::vector<Instance> placeAll(const World& world, const std::vector<int>& items, core::Random& random) {
-  const PlacementArea& area = world.placement;
+  const HorizontalRectangle& area = world.placement;
   CounterTop counter(world);
   std::vector<Instance> placed;
   for (int item : items) {
@@ -75,7 +90,8 @@ std::vector<Instance> sampleInstances(const World& world, const Task& task, core
   text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
        << world.options.placement_depth << " m of the counter, " << world.options.clearance
        << " m apart; lower instances of task '" << task.name
-       << "', most_instances in training or the world's clearance, or raise placement_width or placement_depth";
+       << "', most_instances in training or the world's clearance, or raise placement_width, placement_depth or "
+          "max_overhang; the kitchen's collision shapes take up room, too";
   throw core::Error(text.str());
 }
 

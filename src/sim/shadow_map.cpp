@@ -33,7 +33,7 @@ Box casterBox(const World& world) {
       }
     }
   }
-  const PlacementArea& area = world.placement;
+  const HorizontalRectangle& area = world.placement;
   return {{area.min_x - radius, area.min_y - radius, area.z},
           {area.max_x + radius, area.max_y + radius, area.z + height}};
 }

@@ -37,7 +37,8 @@ core::OptionSet WorldOptions::options() {
   set.add("counter_link", counter_link, "link in kitchen_urdf whose collision box carries the objects");
   set.add("placement_width", placement_width, 0.0, 100.0, "m", "along y, about the counter's middle: for the centres");
   set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
-  set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects");
+  set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects, and between an object and the kitchen");
+  set.add("max_overhang", max_overhang, 0.0, 1.0, "m", "of an object over an edge of the counter's top");
   set.add("image_size", image_size, core::kImageSizeStep, core::kMaxImageSize, "px",
           "edge of the square picture, a multiple of 16");
   set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
@@ -58,8 +59,10 @@ std::shared_ptr<const World> loadWorld(const std::string& world_file) {
   world->rig = CameraRig::load(path(options.camera_urdf), options.pan_joint, options.tilt_joint, options.optical_frame);
   Kitchen kitchen = loadKitchen(path(options.kitchen_urdf), options.counter_link, options.max_triangles);
   world->kitchen = std::move(kitchen.meshes);
+  world->obstacles = std::move(kitchen.obstacles);
+  world->counter_top = kitchen.counter_top;
   world->placement = kitchen.counter_top;
-  PlacementArea& area = world->placement;
+  HorizontalRectangle& area = world->placement;
   shrink(area.min_y, area.max_y, options.placement_width, "placement_width", yaml_file);
   shrink(area.min_x, area.max_x, options.placement_depth, "placement_depth", yaml_file);
   world->objects = ObjectSet::load(path(options.objects), options.max_triangles);

@@ -4,8 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <filesystem>
 
+#include "early_fusion/core/file.h"
 #include "early_fusion/core/random.h"
+#include "early_fusion/sim/object_set.h"
+#include "early_fusion/sim/placed_hull.h"
+#include "test_world.h"
 
 namespace early_fusion::sim {
 namespace {
@@ -21,6 +26,16 @@ Points randomPoints(int count, std::uint64_t seed) {
   return points;
 }
 
+constexpr double kBulletTolerance = 2e-5;  // [m], of PlacedHull's distances
+
+/// The largest distance [m] of the points from the hull of `corners`.
+double farthestOutside(const Points& points, const Points& corners) {
+  const PlacedHull hull(corners, Eigen::Isometry3d::Identity());
+  double farthest = 0;
+  for (const Eigen::Vector3d& point : points) farthest = std::max(farthest, hull.distanceTo(point));
+  return farthest;
+}
+
 double reach(const Points& points, const Eigen::Vector3d& direction) {
   double farthest = -HUGE_VAL;
   for (const Eigen::Vector3d& point : points) farthest = std::max(farthest, point.dot(direction));
@@ -32,7 +47,7 @@ TEST(ConvexHull, IsTheEightCornersOfABoxFullOfPoints) {
   for (int corner = 0; corner < 8; ++corner) {
     points.emplace_back(corner & 1 ? 0.1 : -0.1, corner & 2 ? 0.05 : -0.05, corner & 4 ? 0.2 : 0);
   }
-  const Points hull = convexHullCorners(points, 100, 1e-4);
+  const Points hull = convexHullCorners(points, 1e-4);
   ASSERT_EQ(hull.size(), 8u);
   for (int corner = 0; corner < 8; ++corner) {
     EXPECT_EQ(std::count(hull.begin(), hull.end(), points[500 + corner]), 1) << "corner " << corner;
@@ -47,18 +62,18 @@ TEST(ConvexHull, FallsShortByLessThanTheToleranceInEveryDirection) {
     ball.push_back(0.04 * point.normalized());
   }
   const double tolerance = 0.001;
-  const Points hull = convexHullCorners(ball, 1000, tolerance);
+  const Points hull = convexHullCorners(ball, tolerance);
   EXPECT_LT(hull.size(), 200u);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d direction =
         Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
-    EXPECT_LT(reach(ball, direction) - reach(hull, direction), 1.3 * tolerance);
+    EXPECT_LT(reach(ball, direction) - reach(hull, direction), tolerance + kBulletTolerance);
   }
 }
 
-TEST(ConvexHull, KeepsTheBoundingBoxHoweverFewTheCorners) {
+TEST(ConvexHull, KeepsTheBoundingBoxHoweverWideTheTolerance) {
   const Points points = randomPoints(1000, 3);
-  const Points hull = convexHullCorners(points, 6, 1e-4);
+  const Points hull = convexHullCorners(points, 1);
   EXPECT_LE(hull.size(), 6u);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
@@ -67,13 +82,52 @@ TEST(ConvexHull, KeepsTheBoundingBoxHoweverFewTheCorners) {
   }
 }
 
-TEST(ConvexHull, StopsAtTheMostCornersAllowed) {
-  EXPECT_EQ(convexHullCorners(randomPoints(5000, 4), 40, 0).size(), 40u);
+// Fails where corners are sought along sampled directions only: none of 4,000 points at such a flat tip well enough.
+TEST(ConvexHull, ReachesACornerThatFewDirectionsPointTo) {
+  Points points;
+  for (int corner = 0; corner < 4; ++corner) {
+    points.emplace_back(corner & 1 ? 0.1 : -0.1, corner & 2 ? 0.1 : -0.1, 0);
+  }
+  points.emplace_back(0.0437, 0.0571, 0.0005);
+  points.emplace_back(0, 0, -0.1);
+  points.emplace_back(-0.01, 0.02, 0.0006);
+  const Points hull = convexHullCorners(points, 1e-4);
+  EXPECT_LT(farthestOutside(points, hull), 1e-4 + kBulletTolerance);
+}
+
+void expectCollisionHullsFit(const ObjectSet& objects) {
+  for (int item = 0; item < objects.size(); ++item) {
+    Points vertices;
+    for (const MeshPart& part : objects[item].mesh.parts) {
+      for (const Vertex& vertex : part.vertices) vertices.push_back(vertex.position.cast<double>());
+    }
+    EXPECT_LT(farthestOutside(vertices, objects[item].hull), 0.0002) << objects[item].name;
+    for (const Eigen::Vector3d& corner : objects[item].hull) {
+      EXPECT_NE(std::find(vertices.begin(), vertices.end(), corner), vertices.end()) << objects[item].name;
+    }
+  }
+}
+
+TEST(ConvexHull, FallsLessThanAFifthOfAMillimetreShortOfTheShippedMeshes) {
+  expectCollisionHullsFit(ObjectSet::load(core::shareFolder() + "/config/objects.yaml", 2000));
+}
+
+TEST(ConvexHull, FallsLessThanAFifthOfAMillimetreShortOfScans) {
+  const std::filesystem::path scans = core::shareFolder() + "/../shared/ycb";
+  if (!std::filesystem::is_directory(scans)) GTEST_SKIP() << "no scans in " << scans;
+  std::string yaml = "objects:\n";
+  for (const auto& entry : std::filesystem::directory_iterator(scans)) {
+    if (!entry.is_directory()) continue;
+    const std::string name = entry.path().filename();
+    yaml += "  - {name: '" + name + "', mesh: '" + entry.path().string() + "/textured.obj'}\n";
+  }
+  const TestFolder folder;
+  expectCollisionHullsFit(ObjectSet::load(folder.write("scans.yaml", yaml), 2000));
 }
 
 TEST(ConvexHull, OfASinglePointIsThatPoint) {
   const Eigen::Vector3d point(1, 2, 3);
-  EXPECT_EQ(convexHullCorners({point, point}, 100, 1e-4), Points{point});
+  EXPECT_EQ(convexHullCorners({point, point}, 1e-4), Points{point});
 }
 
 }  // namespace

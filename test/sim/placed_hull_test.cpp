@@ -57,6 +57,8 @@ TEST(PlacedHull, KnowsItsBoundingBall) {
   EXPECT_LT((hull.center() - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
   EXPECT_NEAR(hull.radius(), 0.13, 1e-12);
   EXPECT_EQ(hull.corners().size(), 8u);
+  EXPECT_TRUE(hull.bounds().isApprox(
+      Eigen::AlignedBox3d(Eigen::Vector3d(0.97, 1.96, 2.88), Eigen::Vector3d(1.03, 2.04, 3.12))));
 }
 
 // Fails where GJK stops early on a flat simplex: it then reports some distance for hulls that overlap.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -30,7 +31,7 @@ TEST(Scene, StandsAnInstanceOnTheCounterTurnedAboutZ) {
 }
 
 TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
-  const PlacementArea& area = world().placement;
+  const HorizontalRectangle& area = world().placement;
   for (std::uint64_t episode = 0; episode < 100; ++episode) {
     const EpisodeSetup setup = sampleEpisode(world(), makeTask(10, 3), 1, episode);
     ASSERT_EQ(setup.instances.size(), 10u);
@@ -44,6 +45,61 @@ TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
       }
     }
   }
+}
+
+/// All vertices of an instance's mesh, in the world [m].
+std::vector<Eigen::Vector3d> verticesOf(const World& world, const Instance& instance) {
+  std::vector<Eigen::Vector3d> vertices;
+  const Eigen::Isometry3d pose = worldFromObject(world, instance);
+  for (const MeshPart& part : world.objects[instance.item].mesh.parts) {
+    for (const Vertex& vertex : part.vertices) vertices.push_back(pose * vertex.position.cast<double>());
+  }
+  return vertices;
+}
+
+TEST(Scene, OfTheShippedKitchenStandsInNoWallAndOverhangsNoMoreThanIsSaid) {
+  constexpr double kHullShortfall = 0.0002, kBackSplash = 1.20;  // [m], x
+  const auto shipped = loadWorld("");
+  const HorizontalRectangle& top = shipped->counter_top;
+  double farthest_back = 0, farthest_over = 0;
+  for (std::uint64_t episode = 0; episode < 300; ++episode) {
+    for (const Instance& instance : sampleEpisode(*shipped, makeTask(12, 3), 1, episode).instances) {
+      for (const Eigen::Vector3d& vertex : verticesOf(*shipped, instance)) {
+        farthest_back = std::max(farthest_back, vertex.x());
+        farthest_over =
+            std::max({farthest_over, top.min_x - vertex.x(), top.min_y - vertex.y(), vertex.y() - top.max_y});
+      }
+    }
+  }
+  EXPECT_LT(farthest_back, kBackSplash - shipped->options.clearance + kHullShortfall);
+  EXPECT_LT(farthest_over, shipped->options.max_overhang + kHullShortfall);
+  EXPECT_GT(farthest_back, 1.18) << "objects stand up to the wall";
+  EXPECT_GT(farthest_over, 0.02) << "plates overhang the front edge";
+}
+
+TEST(Scene, KeepsClearOfCollisionShapesThatRiseAboveTheCounter) {
+  const TestFolder folder;
+  const std::string file = writeTestWorld(folder);
+  const std::string post =
+      R"(<collision><origin xyz="0 0.2 1"/><geometry><cylinder radius="0.1" length="0.4"/></geometry></collision>)";
+  const std::string trim =
+      R"(<collision><origin xyz="0 0 0.895"/><geometry><box size="2 4 0.01"/></geometry></collision>)";
+  folder.write("kitchen.urdf", replaced(kKitchenUrdf, R"(<link name="world"/>)",
+                                        R"(<link name="world"/><link name="post">)" + post + trim +
+                                            R"(</link><joint name="post_joint" type="fixed"><origin xyz="0.8 0 0"/>
+                                               <parent link="world"/><child link="post"/></joint>)"));
+  const auto with_post = loadWorld(file);
+  ASSERT_EQ(with_post->obstacles.size(), 1u) << "the trim is level with the counter's top";
+  double nearest = HUGE_VAL;
+  for (std::uint64_t episode = 0; episode < 100; ++episode) {
+    for (const Instance& instance : sampleEpisode(*with_post, makeTask(8, 1), 1, episode).instances) {
+      for (const Eigen::Vector3d& vertex : verticesOf(*with_post, instance)) {
+        nearest = std::min(nearest, (vertex.head<2>() - Eigen::Vector2d(0.8, 0.2)).norm() - 0.1);
+      }
+    }
+  }
+  EXPECT_GE(nearest, with_post->options.clearance - 1e-4);
+  EXPECT_LT(nearest, 0.03) << "objects come near it";
 }
 
 TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {

@@ -54,7 +54,7 @@ TEST(World, HoldsWhatItsFilesSay) {
 }
 
 TEST(World, PlacesObjectsAboutTheMiddleOfTheCountersTop) {
-  const PlacementArea area = testWorld()->placement;
+  const HorizontalRectangle area = testWorld()->placement;
   EXPECT_NEAR(area.min_x, 0.575, 1e-9);
   EXPECT_NEAR(area.max_x, 1.075, 1e-9);
   EXPECT_NEAR(area.min_y, -0.6, 1e-9);
@@ -69,7 +69,7 @@ TEST(World, ReadsACounterThatIsTurnedAQuarter) {
   const std::string turned =
       R"(<collision><origin xyz="0 0 0.88" rpy="0 0 1.570796"/><geometry><box size="3.2 0.75 0.04"/>)";
   folder.write("kitchen.urdf", replaced(kKitchenUrdf, level, turned));
-  const PlacementArea area = loadWorld(world)->placement;
+  const HorizontalRectangle area = loadWorld(world)->placement;
   EXPECT_NEAR(area.min_x, 0.575, 1e-4);
   EXPECT_NEAR(area.max_y, 0.6, 1e-4);
 }

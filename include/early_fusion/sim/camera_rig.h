@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 #include "early_fusion/core/action.h"
 
@@ -52,7 +53,8 @@ class CameraRig {
   const OrientationLattice& lattice() const { return lattice_; }
 
   /// Pose of the optical frame (REP-103: z forward, x right, y down) in the world [m].
-  Eigen::Isometry3d worldFromCamera(Orientation orientation) const;
+  /// @param orientation within the lattice.
+  const Eigen::Isometry3d& worldFromCamera(Orientation orientation) const;
 
  private:
   std::string world_frame_;
@@ -60,11 +62,7 @@ class CameraRig {
   std::string tilt_joint_;
   std::string optical_frame_;
   OrientationLattice lattice_;
-  Eigen::Isometry3d world_from_pan_;
-  Eigen::Isometry3d pan_from_tilt_;
-  Eigen::Isometry3d tilt_from_camera_;
-  Eigen::Vector3d pan_axis_;
-  Eigen::Vector3d tilt_axis_;
+  std::vector<Eigen::Isometry3d> world_from_camera_;  // by lattice index
 };
 
 }  // namespace early_fusion::sim

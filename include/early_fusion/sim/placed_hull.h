@@ -24,6 +24,8 @@ class PlacedHull {
   const Eigen::Vector3d& center() const { return center_; }
   /// Of the ball about center() that holds the hull [m].
   double radius() const { return radius_; }
+  /// Parallel to the world's axes [m].
+  const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 
   /// Smallest distance [m] between two hulls; 0 where they meet.
   double distanceTo(const PlacedHull& other) const;
@@ -36,6 +38,7 @@ class PlacedHull {
   std::vector<Eigen::Vector3d> corners_;
   Eigen::Vector3d center_;
   double radius_ = 0;
+  Eigen::AlignedBox3d bounds_;
   std::unique_ptr<btConvexHullShape> shape_;  // relative to center_, in Bullet's unit
 };
 

@@ -8,6 +8,7 @@
 #include "early_fusion/core/options.h"
 #include "early_fusion/sim/camera_rig.h"
 #include "early_fusion/sim/object_set.h"
+#include "early_fusion/sim/placed_hull.h"
 
 namespace early_fusion::sim {
 
@@ -22,7 +23,8 @@ struct WorldOptions {
   std::string counter_link = "counter";  ///< its collision box carries the objects
   double placement_width = 1.6;          ///< [m] along y, centred on the counter: where objects' centres may lie
   double placement_depth = 0.5;          ///< [m] along x, likewise
-  double clearance = 0.005;              ///< [m] between two objects
+  double clearance = 0.005;              ///< [m] between two objects, and between an object and the kitchen
+  double max_overhang = 0.03;            ///< [m] of an object over an edge of the counter's top
   int image_size = 128;                  ///< [px]
   double horizontal_fov_deg = 60.0;
   int max_triangles = 2000;
@@ -37,8 +39,8 @@ struct FixedMesh {
   Eigen::Isometry3d world_from_mesh;
 };
 
-/// A horizontal rectangle in the world frame on which the centres of objects may lie [m].
-struct PlacementArea {
+/// In the world frame [m].
+struct HorizontalRectangle {
   double min_x, max_x, min_y, max_y, z;
 };
 
@@ -48,7 +50,10 @@ struct World {
   ObjectSet objects;
   CameraRig rig;
   std::vector<FixedMesh> kitchen;
-  PlacementArea placement;
+  /// Of the kitchen's collision shapes, those that rise above the counter's top.
+  std::vector<std::shared_ptr<const PlacedHull>> obstacles;
+  HorizontalRectangle counter_top;
+  HorizontalRectangle placement;  ///< on the counter's top: where the centres of objects may lie
 };
 
 /// @param world_file a WorldOptions file, to which the paths in it are relative; empty: the package's
