@@ -167,7 +167,8 @@ const Model& object(const std::string& name) {
 // Fails when words on a side read from right to left or stand on their head, and when most of what is printed on the
 // sides is drawn out or squeezed: caps and rims, in one colour, are the smaller part.
 TEST(ShippedMeshesTest, PrintOnSidesIsUprightAndInProportion) {
-  for (const char* name : {"mustard_bottle", "potted_meat_can"}) {
+  for (const char* name : {"cracker_box", "sugar_box", "tomato_soup_can", "mustard_bottle", "gelatin_box",
+                           "potted_meat_can", "milk_carton"}) {
     double in_proportion = 0, all = 0;
     for (const Triangle& triangle : object(name).mesh) {
       const Print print = printOn(triangle);

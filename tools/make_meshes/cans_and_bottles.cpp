@@ -10,8 +10,8 @@
 namespace early_fusion::make_meshes {
 namespace {
 
-// Labels; the others in the proportions of the surface that they go around.
-constexpr Cell kSoupLabel{0, 0, 256, 160};
+// Labels, each in the proportions of the surface that it goes around.
+constexpr Cell kSoupLabel{0, 0, 256, 115};
 constexpr Cell kMeatLabel{0, 0, 256, 69};
 constexpr Cell kMustardLabel{0, 0, 256, 160};
 constexpr Cell kLid{0, 160, 96, 96};
@@ -46,7 +46,7 @@ Model tomatoSoupCan() {
   label.rectangle(0, 0, 1, 0.52, red);
   for (const double left : {0.0, 0.5}) {
     label.text("TOMATO", left + 0.05, 0.12, left + 0.45, 0.40, white);
-    label.ellipse(left + 0.25, 0.54, 0.05, 0.08, gold);
+    label.ellipse(left + 0.25, 0.54, 0.05, 0.11, gold);
     label.text("SOUP", left + 0.1, 0.68, left + 0.4, 0.9, red);
   }
   drawLid(canvas.panel(kLid));
