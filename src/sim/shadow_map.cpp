@@ -12,9 +12,11 @@ constexpr int kLongSide = 736;  // [texels]: about 3 mm each on a counter of 2 m
 constexpr int kMargin = 8;      // [texels] that no object reaches
 constexpr int kCellBits = 3;
 constexpr int kCellSize = 1 << kCellBits;  // [texels]
-constexpr int kFilterSize = 4;             // [texels]
-constexpr float kOffset =
-    2.25f;  // [texels] along the normal: half the filter and some, so that no surface shades itself
+constexpr int kBoxSize = 3;                // [texels], of the filter
+constexpr int kFilterSize = kBoxSize + 1;  // [texels] that a box which begins between two of them touches
+// [texels] along the normal: to the farthest centre of a texel that the filter touches, and some, so that no surface
+// shades itself
+constexpr float kOffset = 2.25f;
 constexpr float kNothing = -std::numeric_limits<float>::max();
 
 struct Box {
@@ -126,8 +128,8 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
   std::array<FloatLanes, 3> p;
   for (int i = 0; i < 3; ++i) p[i] = point[i] + (kOffset * texel_size_) * normal[i];
   constexpr float kTexels = 1.f / kSubsamples;
-  const FloatLanes x = (evaluate(projection_.x, p) + projection_.half_width) * kTexels - 0.5f * kFilterSize;
-  const FloatLanes y = (evaluate(projection_.y, p) + projection_.half_height) * kTexels - 0.5f * kFilterSize;
+  const FloatLanes x = (evaluate(projection_.x, p) + projection_.half_width) * kTexels - 0.5f * kBoxSize;
+  const FloatLanes y = (evaluate(projection_.y, p) + projection_.half_height) * kTexels - 0.5f * kBoxSize;
   const FloatLanes depth = evaluate(projection_.depth, p);
   const IntLanes first_x = floorToInt(x), first_y = floorToInt(y);
   const IntLanes inside =
@@ -146,8 +148,8 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
   return result;
 }
 
-/// Mean of the comparisons over a box of 3x3 texels, texels at its rim by the share that is in the box. Its middle is
-/// half a texel, about a millimetre, to the left of the point and above it.
+/// Mean of the comparisons over a box of 3x3 texels whose middle is the point, texels at its rim by the share that is
+/// in the box. `first_texel` is the one in which the box begins, the fractions where in it.
 FloatLanes ShadowMap::filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y,
                                FloatLanes depth) const {
   std::int32_t offset[kLanes];
@@ -163,7 +165,7 @@ FloatLanes ShadowMap::filtered(IntLanes first_texel, FloatLanes fraction_x, Floa
       sum += row == kFilterSize - 1 ? fraction_y * row_sum : row_sum;
     }
   }
-  return sum * (1.f / 9.f);
+  return sum * (1.f / (kBoxSize * kBoxSize));
 }
 
 }  // namespace early_fusion::sim

@@ -26,7 +26,8 @@ class ShadowMap {
   };
   void draw(const std::vector<Caster>& casters);
 
-  /// Share of the light that reaches points of a surface, in [0, 1]: soft over about three texels.
+  /// Share of the light that reaches points of a surface, in [0, 1]: soft over three texels, half where the edge of
+  /// what stops the light is, up to the rounding of that edge to whole texels.
   /// @param point, normal (unit length) in the world [m]
   /// @param needed lanes whose result is used
   FloatLanes lit(const std::array<FloatLanes, 3>& point, const std::array<FloatLanes, 3>& normal,

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -136,6 +139,73 @@ TEST(ShippedMeshesTest, TextureCoordinatesOfObjectsLieInTheTexture) {
         ASSERT_LE(corner.uv.maxCoeff(), 1) << model.name;
       }
     }
+  }
+}
+
+// How a texture lies on a triangle: the way on the surface for one width or height of the texture [m].
+struct Print {
+  Eigen::Vector3d right, down, outwards;
+  double area;  // [m^2], twice
+};
+
+Print printOn(const Triangle& triangle) {
+  Eigen::Matrix<double, 3, 2> edges;
+  Eigen::Matrix2d uv_edges;
+  for (int i = 0; i < 2; ++i) {
+    edges.col(i) = triangle[i + 1].position - triangle[0].position;
+    uv_edges.col(i) = triangle[i + 1].uv - triangle[0].uv;
+  }
+  const Eigen::Matrix<double, 3, 2> across = edges * uv_edges.inverse();
+  const Eigen::Vector3d face = edges.col(0).cross(edges.col(1));
+  return {across.col(0), across.col(1), face.normalized(), face.norm()};
+}
+
+const Model& object(const std::string& name) {
+  return *std::find_if(objects().begin(), objects().end(), [&](const Model& model) { return model.name == name; });
+}
+
+// Fails when words on a side read from right to left or stand on their head, and when most of what is printed on the
+// sides is drawn out or squeezed: caps and rims, in one colour, are the smaller part.
+TEST(ShippedMeshesTest, PrintOnSidesIsUprightAndInProportion) {
+  for (const char* name : {"cracker_box", "sugar_box", "tomato_soup_can", "mustard_bottle", "gelatin_box",
+                           "potted_meat_can", "milk_carton"}) {
+    double in_proportion = 0, all = 0;
+    for (const Triangle& triangle : object(name).mesh) {
+      const Print print = printOn(triangle);
+      if (std::fabs(print.outwards.z()) > 0.2) continue;
+      ASSERT_LT(print.right.cross(print.down).dot(print.outwards), 0) << name << " is printed mirrored";
+      ASSERT_LT(print.down.z(), 0) << name << " is printed upside down";
+      const double stretch = print.right.norm() / print.down.norm();
+      all += print.area;
+      in_proportion += std::fabs(std::log(stretch)) < std::log(1.1) ? print.area : 0;
+    }
+    EXPECT_GT(in_proportion, 0.75 * all) << name;
+  }
+}
+
+// Share of a model's sides that face along an axis, give or take 14 degrees, in which the texture is red.
+double redShare(const Model& model, int axis) {
+  int red = 0, all = 0;
+  for (const Triangle& triangle : model.mesh) {
+    if (std::fabs(printOn(triangle).outwards[axis]) < 0.97 || triangle[0].position.z() > 0.14) continue;
+    constexpr int kParts = 6;
+    for (int i = 1; i < kParts; ++i) {
+      for (int j = 1; i + j < kParts; ++j, ++all) {
+        const Eigen::Vector2d uv =
+            (i * triangle[0].uv + j * triangle[1].uv + (kParts - i - j) * triangle[2].uv) / kParts;
+        const auto bgr = model.texture.at<cv::Vec3b>(int(256 * uv.y()), int(256 * uv.x()));
+        red += bgr[2] > std::max(bgr[0], bgr[1]) + 80;
+      }
+    }
+  }
+  return static_cast<double>(red) / all;
+}
+
+// Fails when what is on a label, of which some is red, goes around the narrow sides, which face along y.
+TEST(ShippedMeshesTest, LabelsAreOnTheBroadSides) {
+  for (const char* name : {"mustard_bottle", "potted_meat_can"}) {
+    EXPECT_GT(redShare(object(name), 0), 0.05) << name;
+    EXPECT_EQ(redShare(object(name), 1), 0) << name;
   }
 }
 

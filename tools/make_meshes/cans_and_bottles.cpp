@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "make_meshes/curve.h"
@@ -9,12 +10,22 @@
 namespace early_fusion::make_meshes {
 namespace {
 
-constexpr Cell kLabel{0, 0, 256, 160};
+// Labels, each in the proportions of the surface that it goes around.
+constexpr Cell kSoupLabel{0, 0, 256, 115};
+constexpr Cell kMeatLabel{0, 0, 256, 69};
+constexpr Cell kMustardLabel{0, 0, 256, 160};
 constexpr Cell kLid{0, 160, 96, 96};
 constexpr Cell kBase{96, 160, 96, 96};
 constexpr Cell kRim{192, 160, 64, 96};
 
 const Colour kTin{176, 178, 182};
+
+// Rings begin in the middle of the broad +x side. Begun in that of the narrow -y side instead, a label has its seam
+// there, a quarter of it in the middle of one broad side and three quarters in that of the other.
+std::vector<Ring> seamOnNarrowSide(std::vector<Ring> rings) {
+  for (Ring& ring : rings) std::rotate(ring.begin(), ring.end() - ring.size() / 4, ring.end());
+  return rings;
+}
 
 // A stamped tin lid.
 void drawLid(Panel panel) {
@@ -30,12 +41,12 @@ void drawLid(Panel panel) {
 Model tomatoSoupCan() {
   const Colour red{206, 22, 26}, white{248, 246, 240}, gold{214, 170, 60};
   Canvas canvas(kObjectTextureSize, kTin);
-  Panel label = canvas.panel(kLabel);
+  Panel label = canvas.panel(kSoupLabel);
   label.fill(white);
   label.rectangle(0, 0, 1, 0.52, red);
   for (const double left : {0.0, 0.5}) {
     label.text("TOMATO", left + 0.05, 0.12, left + 0.45, 0.40, white);
-    label.ellipse(left + 0.25, 0.54, 0.05, 0.08, gold);
+    label.ellipse(left + 0.25, 0.54, 0.05, 0.11, gold);
     label.text("SOUP", left + 0.1, 0.68, left + 0.4, 0.9, red);
   }
   drawLid(canvas.panel(kLid));
@@ -46,7 +57,7 @@ Model tomatoSoupCan() {
   append(mesh, revolve({{r - 0.002, 0}, {r, 0.001}, {r, 0.004}, {r - 0.001, 0.005}}, segments, kRim.uv()));
   append(mesh,
          revolve({{r - 0.001, 0.005}, {r - 0.001, 0.03}, {r - 0.001, 0.055}, {r - 0.001, 0.08}, {r - 0.001, h - 0.005}},
-                 segments, kLabel.uv()));
+                 segments, kSoupLabel.uv()));
   append(mesh, revolve({{r - 0.001, h - 0.005}, {r, h - 0.004}, {r, h - 0.001}, {r - 0.002, h}}, segments, kRim.uv()));
   append(mesh, revolve({{r - 0.002, h}, {r - 0.004, h - 0.003}, {0, h - 0.003}}, segments, kLid.uv(), Wrap::kFlat));
   return finishObject("tomato_soup_can", mesh, canvas, 0.25);
@@ -55,13 +66,12 @@ Model tomatoSoupCan() {
 Model pottedMeatCan() {
   const Colour blue{20, 52, 150}, yellow{250, 214, 40}, ham{236, 150, 140}, white{240, 240, 240};
   Canvas canvas(kObjectTextureSize, kTin);
-  Panel label = canvas.panel(kLabel);
+  Panel label = canvas.panel(kMeatLabel);
   label.fill(blue);
-  // The ring starts in the middle of a wide side: these are around the narrow ones.
   for (const double middle : {0.25, 0.75}) {
-    label.text("HAM", middle - 0.15, 0.04, middle + 0.15, 0.44, yellow);
-    label.ellipse(middle, 0.66, 0.12, 0.19, white);
-    label.ellipse(middle, 0.66, 0.10, 0.15, ham);
+    label.text("HAM", middle - 0.16, 0.05, middle + 0.16, 0.42, yellow);
+    label.ellipse(middle, 0.66, 0.10, 0.19, white);
+    label.ellipse(middle, 0.66, 0.085, 0.15, ham);
   }
   label.rectangle(0, 0.88, 1, 1, yellow);
   Panel lid = canvas.panel(kLid);
@@ -77,7 +87,8 @@ Model pottedMeatCan() {
   const double h = 0.084;
   Mesh mesh = loft({pointRing({0, 0, 0}, count), ring(0.002, 0)}, kBase.uv(), Wrap::kFlat);
   append(mesh, loft({ring(0.002, 0), ring(0, 0.002), ring(0, 0.004)}, kRim.uv()));
-  append(mesh, loft({ring(0, 0.004), ring(0, 0.03), ring(0, 0.055), ring(0, h - 0.005)}, kLabel.uv()));
+  append(mesh,
+         loft(seamOnNarrowSide({ring(0, 0.004), ring(0, 0.03), ring(0, 0.055), ring(0, h - 0.005)}), kMeatLabel.uv()));
   append(mesh, loft({ring(0, h - 0.005), ring(0, h - 0.001), ring(0.001, h)}, kRim.uv()));
   append(mesh,
          loft({ring(0.001, h), ring(0.004, h - 0.003), pointRing({0, 0, h - 0.003}, count)}, kLid.uv(), Wrap::kFlat));
@@ -117,14 +128,14 @@ std::vector<Ring> mustardBody(int count) {
 Model mustardBottle() {
   const Colour cap{250, 214, 70}, tip{170, 30, 20};
   Canvas canvas(kObjectTextureSize, {236, 168, 0});
-  drawMustardLabel(canvas.panel(kLabel));
+  drawMustardLabel(canvas.panel(kMustardLabel));
   canvas.panel(kRim).fill(cap);
   canvas.panel(kLid).fill(tip);
   canvas.panel(kBase).fill({200, 140, 0});
   const int count = 28;
   const std::vector<Ring> body = mustardBody(count);
   Mesh mesh = loft({pointRing({0, 0, 0}, count), body.front()}, kBase.uv(), Wrap::kFlat);
-  append(mesh, loft(body, kLabel.uv()));
+  append(mesh, loft(seamOnNarrowSide(body), kMustardLabel.uv()));
   const Ring neck = body.back();
   append(mesh, loft({neck, ellipseRing(0.0175, 0.0175, 0.142, count), ellipseRing(0.0175, 0.0175, 0.157, count),
                      ellipseRing(0.015, 0.015, 0.160, count), ellipseRing(0.008, 0.008, 0.163, count),

@@ -10,9 +10,8 @@ namespace early_fusion::make_meshes {
 namespace {
 
 constexpr int kOversampling = 2;
-constexpr int kGrid = 256;         // units of Cell
-constexpr double kCellMargin = 2;  // [units of Cell]
-constexpr int kFractionBits = 4;   // of OpenCV's fixed-point coordinates
+constexpr int kGrid = 256;        // units of Cell
+constexpr int kFractionBits = 4;  // of OpenCV's fixed-point coordinates
 
 cv::Scalar bgr(const Colour& colour) { return {colour.b, colour.g, colour.r}; }
 
@@ -25,8 +24,8 @@ Colour mix(const Colour& a, const Colour& b, double t) {
 }
 
 UvRect Cell::uv() const {
-  return {Eigen::Vector2d(x + kCellMargin, y + kCellMargin) / kGrid,
-          Eigen::Vector2d(x + width - kCellMargin, y + height - kCellMargin) / kGrid};
+  return {Eigen::Vector2d(x + kMargin, y + kMargin) / kGrid,
+          Eigen::Vector2d(x + width - kMargin, y + height - kMargin) / kGrid};
 }
 
 cv::Point Panel::fixedPoint(double x, double y) const {

@@ -20,9 +20,11 @@ Colour mix(const Colour& a, const Colour& b, double t);
 
 /// A rectangle of the texture, on a grid of 256 x 256 over the whole of it.
 struct Cell {
+  static constexpr int kMargin = 2;  ///< on every side
+
   int x = 0, y = 0, width = 256, height = 256;
 
-  /// The cell without a margin that keeps its neighbours out of coarse mip levels.
+  /// The cell without its margin, which keeps its neighbours out of coarse mip levels.
   UvRect uv() const;
 };
 
