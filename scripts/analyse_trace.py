@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Tells what a policy gets wrong, from the trace of an evaluation.
+"""Shows what a policy gets wrong, from the trace of an evaluation.
 
 Example: early_fusion evaluate --policy models/simple.safetensors --task simple --trace trace.json
          scripts/analyse_trace.py trace.json
-Prints, in Markdown: what the policy does where the expert would do what; how many requested objects were collected, by
-type, by how far they were at the start, by how much stood before them; what was collected by mistake; and what of the F1
-was lost to which cause.
+Prints tables in Markdown: the policy's actions against the expert's labels; the share of requested objects that were
+collected, by item, by the expert's steps at the start and by exposure; the objects that were collected by mistake; and
+the F1 that each cause costs.
 """
 import argparse
 import collections
@@ -13,9 +13,9 @@ import json
 import sys
 
 ACTIONS = ["PAN_LEFT", "PAN_RIGHT", "TILT_UP", "TILT_DOWN", "COLLECT", "REMOVE", "IDLE"]
-LAST = 8  # steps that an ending is told from
-NEAR = 3  # steps that collecting what stands beside would still have cost
-SHOWN = 8  # episodes of a kind that are named
+LAST = 8  # the last steps, from which the cause of an ending is determined
+NEAR = 3  # a requested object is beside the collected one if collecting it costs at most this many steps
+SHOWN = 8  # episode numbers that are listed for each cause
 
 
 def read_episodes(path):

@@ -7,7 +7,7 @@ base_url="http://ycb-benchmarks.s3-website-us-east-1.amazonaws.com/data/google"
 default_ids=(003_cracker_box 004_sugar_box 005_tomato_soup_can 006_mustard_bottle 009_gelatin_box 010_potted_meat_can
   011_banana 012_strawberry 013_apple 014_lemon 015_peach 017_orange 024_bowl 025_mug 026_sponge 029_plate 055_baseball
   077_rubiks_cube)
-# Where config/ycb_objects.yaml looks: of the source tree, or installed.
+# The folder in which config/ycb_objects.yaml looks for them, in the source tree or installed.
 here="$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 case "$here" in
   */lib/early_fusion) folder="${here%/lib/early_fusion}/share/early_fusion/meshes/ycb" ;;
@@ -33,7 +33,7 @@ fail() {
   exit 1
 }
 
-# download ID: leaves FOLDER/ID/google_16k/textured.obj and its texture, or nothing.
+# download ID: makes FOLDER/ID/google_16k/textured.obj and its texture, or nothing.
 download() {
   local id="$1" url="$base_url/$1_google_16k.tgz"
   if [[ -f "$folder/$id/google_16k/textured.obj" ]]; then
@@ -77,7 +77,7 @@ for tool in curl tar; do
   command -v "$tool" >/dev/null || fail "needs $tool: install it first"
 done
 mkdir -p "$folder" || fail "cannot make the folder $folder"
-# Beside its destination, so that a finished scan is moved into place at once.
+# On the destination's file system, so that moving a finished scan into place is atomic.
 scratch="$(mktemp -d "$folder/.download.XXXXXX")"
 trap 'rm -rf "$scratch"' EXIT
 
@@ -87,7 +87,7 @@ for id in "${ids[@]}"; do download "$id"; done
   echo "# Scans of the YCB object and model set (Calli et al. 2015, CC BY 4.0), in metres. Written by download_ycb.sh."
   echo "objects:"
   for id in "${ids[@]}"; do
-    # Without its number: "cracker_box" is what requests will say.
+    # The item's name has no number: cracker_box.
     name="${id#*_}"
     echo "  - {name: $name, mesh: $id/google_16k/textured.obj, scale: 1.0}"
   done

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws learning curves: F1 and agreement of the rollouts against trajectories and against minutes.
 
-Runs of the same name are one line, their mean, with the band from the lowest to the highest.
+Runs with the same name are drawn as one line, their mean, with a band from their minimum to their maximum.
 Example: scripts/plot_curves.py --out curves.svg fast=runs/fast1 fast=runs/fast2 paper=runs/paper
 """
 import argparse

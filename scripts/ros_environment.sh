@@ -1,5 +1,5 @@
-# Sourced by the other scripts: the built package's environment, with ROS listening on this machine alone unless the user
-# says otherwise (ROS_MASTER_URI, ROS_IP or ROS_HOSTNAME).
+# Sourced by the other scripts. Sets the environment of the built package. ROS listens on this machine only, unless the
+# user sets ROS_IP or ROS_HOSTNAME.
 set +u
 . "$(dirname "${BASH_SOURCE[0]}")/../devel/setup.sh"
 set -u

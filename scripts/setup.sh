@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian packages), configures and builds the package in place. Safe to run again: what is
-# there already is left alone.
+# Installs the missing Debian packages, then configures and builds the package in place. It can be run again: it
+# installs and builds only what is missing.
 #
 # Usage: scripts/setup.sh [--tests]
-#   --tests   also what the tests and benchmarks need, and build them
+#   --tests   also installs what the tests and benchmarks need, and builds them
 set -euo pipefail
 
 case "${1:-}" in
@@ -26,7 +26,7 @@ debian_ros=(catkin libactionlib-dev libcv-bridge-dev libdiagnostic-updater-dev l
   ros-visualization-msgs rosbash)
 for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-rostest)
 
-# Installs the Debian packages that are missing, saying which.
+# Installs the missing ones of the given Debian packages and prints their names.
 install_missing() {
   local missing=()
   for package in "$@"; do
@@ -57,7 +57,7 @@ else
 fi
 install_missing "${packages[@]}"
 
-# Tests stay configured once they have been asked for, so that the two scripts share one build.
+# Once tests have been configured they stay so: train.sh and test.sh share one build folder.
 if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/CMakeCache.txt; then
   cmake -S . -B build -DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests >build.log 2>&1 ||
     { cat build.log; exit 1; }

@@ -2,7 +2,7 @@
 # Sets everything up and runs a full training session: simulator, policy and trainer node.
 #
 # Usage: scripts/train.sh [name:=value ...]
-#   Every argument goes to roslaunch: scripts/train.sh task:=medium channels:=32 trajectories:=4000
+#   Every argument is passed to roslaunch: scripts/train.sh task:=medium
 #   `roslaunch --ros-args early_fusion train.launch` lists them all.
 set -euo pipefail
 case "${1:-}" in
@@ -11,7 +11,7 @@ case "${1:-}" in
     exit 0
     ;;
 esac
-# Files are relative to where the script was called; nodes run elsewhere.
+# Paths are relative to the caller's folder, but nodes run in another folder, so paths are made absolute.
 arguments=()
 for argument in "$@"; do
   case "$argument" in
@@ -36,7 +36,7 @@ for argument in "${arguments[@]}"; do
 done
 port_option=()
 if [ -z "${ROS_MASTER_URI:-}" ] || [ "$ROS_MASTER_URI" = http://localhost:11311 ]; then
-  # A master of its own, on a port that nobody listens on.
+  # Start a separate master on a free port.
   port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
   export ROS_MASTER_URI="http://127.0.0.1:$port"
   port_option=(-p "$port")
@@ -50,7 +50,7 @@ the policy still tries things out; at the end it is scored on episodes that it n
 TEXT
 roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "${arguments[@]}"
 
-# roslaunch exits with 0 whatever its nodes did: the result file tells.
+# roslaunch exits with 0 even if its nodes failed. A result file exists only after a complete session.
 [ -f "$output/result.json" ] || { echo "train.sh: the session ended without a result; see the messages above" >&2; exit 1; }
 echo
 echo "Trained weights: $output/weights.safetensors"
@@ -64,10 +64,10 @@ PYTHON
 }
 score "$output/result.json" "Its score"
 
-# How that compares with the policy that ships for the same task and world.
+# The score of the policy that ships for the same task, in the same world, for comparison.
 episodes=$(/usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["episodes"])' "$output/result.json")
 shipped="models/$task.safetensors"
-[ -f "$shipped" ] || shipped=models/medium.safetensors  # does other tasks, too
+[ -f "$shipped" ] || shipped=models/medium.safetensors  # also does the other tasks
 if [ -z "$world" ] && [ "$episodes" -gt 0 ]; then
   comparison=$(mktemp)
   trap 'rm -f "$comparison"' EXIT

@@ -6,9 +6,10 @@
 
 namespace early_fusion::core {
 
-/// What the agent can do in one step (Walsman et al. 2019, sec. IV-A). Moves are 2 degrees.
+/// The actions of one step (Walsman et al. 2019, sec. IV-A). A move is 2 degrees.
 ///
-/// Signs follow REP-103: pan is positive to the left, tilt (a rotation about y, which points left) positive downwards.
+/// Signs follow REP-103: pan is positive to the left; tilt is a rotation about y, which points left, so it is positive
+/// downwards.
 enum class Action : std::uint8_t { kPanLeft, kPanRight, kTiltUp, kTiltDown, kCollect, kRemove, kIdle };
 
 inline constexpr int kActionCount = 7;
@@ -20,7 +21,7 @@ inline constexpr std::array<Action, kActionCount> kAllActions = {Action::kPanLef
 /// The name used in messages, traces and on the command line: "PAN_LEFT", ..., "IDLE".
 const char* actionName(Action action);
 
-/// @throws Error when `name` is not one of the seven, listing them.
+/// @throws Error listing the seven names if `name` is none of them.
 Action actionFromName(const std::string& name);
 
 }  // namespace early_fusion::core

@@ -6,10 +6,10 @@
 
 namespace early_fusion::core {
 
-/// The edge of a square picture [px] is a multiple of kImageSizeStep up to kMaxImageSize.
+/// The edge of a square frame [px] is a multiple of kImageSizeStep, at most kMaxImageSize.
 inline constexpr int kImageSizeStep = 16;
 inline constexpr int kMaxImageSize = 992;
-static_assert(kImageSizeStep == 16 && kMaxImageSize == 992, "as kImageSizes tells");
+static_assert(kImageSizeStep == 16 && kMaxImageSize == 992, "kImageSizes must say the same");
 inline constexpr char kImageSizes[] = "a multiple of 16 in [16, 992]";
 
 inline bool isImageSize(int size) {

@@ -5,14 +5,14 @@
 
 namespace early_fusion::core {
 
-/// "mug, bowl, plate".
+/// The names with the separator between them: "mug, bowl, plate".
 std::string joined(const std::vector<std::string>& names, const std::string& separator = ", ");
 
-/// The index of `name` in `known`. @param kind what a name stands for, "item".
+/// The index of `name` in `known`. @param kind what the names are names of, for the error text: "item".
 /// @throws Error "unknown item 'cup'; known are mug, bowl, plate".
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind);
 
-/// The keys of a map from texts, in its order.
+/// The keys of a map whose keys are strings, in the map's order.
 template <class Map>
 std::vector<std::string> keys(const Map& map) {
   std::vector<std::string> keys;

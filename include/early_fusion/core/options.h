@@ -12,21 +12,21 @@ class Node;
 
 namespace early_fusion::core {
 
-/// One setting, declared once: name, unit, range and help serve YAML files, the command line and ROS parameters alike.
+/// One setting. It is declared once; YAML files, the command line and ROS parameters all use this declaration.
 struct Option {
   std::string name;
-  std::string unit;     ///< empty when it has none
-  std::string range;    ///< for a reader: "[1, 4096]", "paper | fast", "true | false"
+  std::string unit;     ///< empty if it has none
+  std::string range;    ///< as shown to the user: "[1, 4096]", "paper | fast", "true | false"
   std::string initial;  ///< the default, as text
   std::string help;
-  std::function<void(const std::string& text)> set;  ///< @throws Error with the reason only
+  std::function<void(const std::string& text)> set;  ///< @throws Error with the reason, without the option's name
   std::function<std::string()> get;
 
-  /// Whether it is only true or false.
+  /// Whether the value is true or false, so that the command line takes a flag without a value.
   bool isSwitch() const { return range == "true | false"; }
 };
 
-/// The options of one plain struct, bound to its fields, which must outlive the set.
+/// The options of one plain struct, bound to its fields. The struct must outlive the set.
 class OptionSet {
  public:
   /// `title` names the group in error texts and --help: "task", "training".
@@ -41,22 +41,24 @@ class OptionSet {
   void addChoice(const std::string& name, std::string& field, const std::vector<std::string>& choices,
                  const std::string& help);
 
-  /// Also takes every option of `other`. A name that stands twice is a programmer's error.
+  /// Adds every option of `other`. No name may be in both sets.
   void include(OptionSet other);
 
   const std::string& title() const { return title_; }
   const std::vector<Option>& options() const { return options_; }
   bool has(const std::string& name) const;
 
-  /// @param source where the value comes from ("config/tasks/simple.yaml", "--channels", "/trainer/channels").
-  /// @throws Error naming source, key, value and the allowed range; for an unknown name, the known ones.
+  /// @param source the origin of the value, for error texts ("config/tasks/simple.yaml", "--channels",
+  /// "/trainer/channels").
+  /// @throws Error naming source, key, value and the allowed range; for an unknown name, listing the known ones.
   void set(const std::string& name, const std::string& text, const std::string& source);
 
-  /// Sets every key of a YAML map. @throws Error naming `file` and the line, for unknown keys and bad values too.
+  /// Sets an option for every key of a YAML map. @throws Error naming `file` and the line for an unknown key or a bad
+  /// value.
   void setFromYaml(const YAML::Node& map, const std::string& file);
   void setFromYamlFile(const std::string& file);
 
-  /// "name: value" lines, one an option: what was in force, for logs and metadata.
+  /// The current values as "name: value" lines, for logs and metadata.
   std::string toYaml() const;
 
  private:
@@ -66,7 +68,7 @@ class OptionSet {
   std::vector<Option> options_;
 };
 
-/// @throws Error naming `file`, and the line where it isn't YAML.
+/// @throws Error naming `file`, and the line at which it is not valid YAML.
 YAML::Node loadYamlFile(const std::string& file);
 
 }  // namespace early_fusion::core

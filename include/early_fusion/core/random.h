@@ -7,10 +7,10 @@
 
 namespace early_fusion::core {
 
-/// A seeded random stream whose numbers are the same on every machine (SplitMix64, Steele et al. 2014).
+/// A seeded random stream with the same numbers on every machine (SplitMix64, Steele et al. 2014).
 ///
-/// The standard library's distributions may differ between implementations, so the few that are needed are here.
-/// Every consumer takes a stream of its own, keyed by what it is for, so no stream has to be stored in a checkpoint.
+/// The standard library's distributions differ between implementations, so this class has its own. Each consumer makes
+/// its own stream, keyed by the stream's purpose. So a checkpoint stores no stream.
 class Random {
  public:
   /// Streams with different keys are independent: `Random(seed, {kEpisodeStream, episode})`.
@@ -24,10 +24,10 @@ class Random {
   /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-  /// Uniform in {0, ..., count - 1}; count > 0. Unbiased.
+  /// Uniform in {0, ..., count - 1}, without bias. `count` must be positive.
   int below(int count);
 
-  /// Fisher-Yates.
+  /// A uniformly random permutation (Fisher-Yates).
   template <class T>
   void shuffle(std::vector<T>& values) {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(static_cast<int>(i))]);
@@ -37,16 +37,16 @@ class Random {
   std::uint64_t state_;
 };
 
-/// The keys that separate the streams drawn from one session seed.
+/// The first key of a stream: its purpose. The braces show the keys that follow.
 enum RandomStream : std::uint64_t {
   kEpisodeStream = 1,       ///< {episode}: scene, request and first camera orientation
   kSamplingStream = 2,      ///< {episode, step}: the action drawn from the policy's probabilities
-  kInitialisation = 3,      ///< {}: the network's first weights
+  kInitialisation = 3,      ///< {}: the network's initial weights
   kShuffleStream = 4,       ///< {round, epoch}: the order of training samples
   kDropoutStream = 5,       ///< {round, first frame of the batch}: dropout masks
-  kRelabelStream = 6,       ///< {episode, step}: the other requests that a frame is labelled for
-  kRandomPolicyStream = 7,  ///< {episode, step}: the random baseline
-  kPersistenceStream = 8    ///< {episode, step}: whether a persistent draw is made anew
+  kRelabelStream = 6,       ///< {episode, step}: the further labelled requests of a frame
+  kRandomPolicyStream = 7,  ///< {episode, step}: actions of the random baseline
+  kPersistenceStream = 8    ///< {episode, step}: whether persistent exploration draws a new random number
 };
 
 }  // namespace early_fusion::core

@@ -15,44 +15,44 @@ constexpr ActionSet bit(core::Action action) { return static_cast<ActionSet>(1u 
 
 inline bool contains(ActionSet set, core::Action action) { return (set >> static_cast<int>(action)) & 1; }
 
-/// The steps that collecting one instance would cost from here; unreachable instances are left out.
+/// The steps to collect one instance from the current state. Unreachable instances have no entry.
 struct InstanceCost {
   int instance;
   int steps;
 };
 
 struct Decision {
-  core::Action action;              ///< the label: the first of `optimal` in the order documented at decide()
-  ActionSet optimal;                ///< every action that starts a cheapest way to a cheapest requested instance
-  std::vector<InstanceCost> costs;  ///< of all instances that can be reached and whose type is requested
+  core::Action action;              ///< the label: the first of `optimal` in decide()'s order
+  ActionSet optimal;                ///< all first actions of shortest ways to the nearest requested instances
+  std::vector<InstanceCost> costs;  ///< of all reachable instances of a requested item
 };
 
-/// The greedy oracle of the paper: goes for the requested instance that takes the fewest steps, deciding anew each
+/// The greedy expert of the paper: it goes for the requested instance with the fewest steps and decides anew at each
 /// step.
 ///
-/// Steps to an instance = the minimum, over all orientations at which it is in the cone, of |pan steps| + |tilt steps|
-/// + one action for each nearer object in the cone + 1 to collect it. Where several actions are equally good, the label
-/// is the first of COLLECT, REMOVE, PAN_LEFT, PAN_RIGHT, TILT_UP, TILT_DOWN: a function of the state alone. With
-/// nothing requested within reach: IDLE.
+/// The steps to an instance are the minimum, over all orientations at which it is in the cone, of |pan steps| + |tilt
+/// steps| + one action for each nearer object in the cone + 1 to collect it. If several actions are equally good, the
+/// label is the first of COLLECT, REMOVE, PAN_LEFT, PAN_RIGHT, TILT_UP, TILT_DOWN, so it is a function of the state. If
+/// no requested instance can be reached, the label is IDLE.
 Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
                 sim::Orientation orientation, const core::Request& request);
 
-/// The present instances of a requested type.
+/// The present instances of the requested items.
 sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, sim::InstanceMask present,
                                   const core::Request& request);
 
-/// What an expert would do: without allocating, as training asks at every frame.
+/// An expert's answer for one state. It needs no allocation, because training asks for several at each frame.
 struct Label {
   core::Action action = core::Action::kIdle;
-  ActionSet optimal = 0;  ///< every action that is as good
-  int steps = 0;          ///< until an instance is collected; 0 where none is to be, or it is not known how many
+  ActionSet optimal = 0;  ///< all equally good actions, `action` among them
+  int steps = 0;          ///< until an instance is collected; 0 if none is wanted or the number is unknown
 };
 
-/// @param wanted instances to go for.
+/// The greedy label. @param wanted the instances to collect.
 Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::InstanceMask present,
                sim::Orientation orientation);
 
-/// The same for the instances of the requested types.
+/// The greedy label for the instances of the requested items.
 Label label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
             sim::Orientation orientation, const core::Request& request);
 

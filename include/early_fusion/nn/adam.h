@@ -12,18 +12,19 @@ struct AdamOptions {
   double weight_decay = 0.0;  ///< decoupled (AdamW); 0: plain Adam
 };
 
-/// Adam (Kingma and Ba 2015) over one flat vector; the numbers are PyTorch's torch.optim.Adam / AdamW.
+/// Adam (Kingma and Ba 2015) over one flat vector. The defaults and the update are those of PyTorch's torch.optim.Adam
+/// and AdamW.
 class Adam {
  public:
   Adam(Eigen::Index size, const AdamOptions& options);
 
   void step(Eigen::VectorXf& values, const Eigen::VectorXf& gradients, double learning_rate);
 
-  // The state that a checkpoint holds.
+  // The state for a checkpoint.
   std::int64_t stepCount() const { return step_count_; }
   const Eigen::VectorXf& firstMoment() const { return first_moment_; }
   const Eigen::VectorXf& secondMoment() const { return second_moment_; }
-  /// Sizes must be those of this optimizer.
+  /// Both vectors must have the optimizer's size.
   void restore(std::int64_t step_count, const Eigen::VectorXf& first_moment, const Eigen::VectorXf& second_moment);
 
  private:

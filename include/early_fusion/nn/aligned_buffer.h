@@ -8,14 +8,14 @@
 
 namespace early_fusion::nn {
 
-/// Zeroed memory for numbers, aligned to 64 bytes: a cache line, and the widest vector register.
+/// Zeroed memory for numbers. It is aligned to 64 bytes, the size of a cache line and of the widest vector register.
 template <class T>
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
   explicit AlignedBuffer(std::size_t size) { reserve(size); }
 
-  /// Makes room for `size` numbers. Growing drops the contents; the new ones are 0.
+  /// Makes room for at least `size` numbers. If the buffer grows, all its numbers become 0.
   void reserve(std::size_t size) {
     if (size <= size_) return;
     const std::size_t bytes = (size * sizeof(T) + 63) / 64 * 64;

@@ -14,15 +14,15 @@
 namespace early_fusion::nn {
 
 struct ConvBlockShape {
-  int image_channels;       ///< of the maps given to it
-  int goal_channels;        ///< 0 where no goal joins
+  int image_channels;       ///< of the input maps, without the goal
+  int goal_channels;        ///< 0 if no goal joins
   int out_channels;         ///< a multiple of kLanes
   int size;                 ///< edge of the input map [px], even
-  float input_scale = 1.f;  ///< the network sees input_scale * x
+  float input_scale = 1.f;  ///< the block computes with input_scale * x
 };
 
-/// A batch divided into shares whose weight gradients are summed one image after the other: a thread may take any
-/// share, and the sum is the same bits whatever the number of threads.
+/// A batch divided into shares. Within a share, the images' weight gradients are added in order, by one thread. The
+/// shares do not depend on the number of threads, so neither do the bits of the sum.
 struct ImageShares {
   explicit ImageShares(int batch) : images(batch), count(batch < kMost ? batch : kMost) {}
 
@@ -35,18 +35,18 @@ struct ImageShares {
 
 /// One block of the network: 3x3 convolution with bias -> 2x2 max-pool -> ReLU -> batch norm.
 ///
-/// Works image by image, so that whoever runs images in parallel can keep what passes between two layers in the cache;
-/// between the passes over a batch, finishForward() and finishBackward() join the images' sums. Functions that take
-/// `thread` may run at the same time for different threads and images.
+/// The block works image by image, so that a thread can take an image through a block within its cache. After each pass
+/// over a batch, finishForward() or finishBackward() joins the images' sums. Functions that take `thread` may run at
+/// the same time for different threads and images.
 ///
-/// A tiled goal is a bias to the convolution: images that differ in their goal alone share one convolution, forward and
-/// backward, and only from the pooling on each has a map of its own.
+/// A tiled goal is a bias to the convolution. Images that differ only in their goal share one convolution, forward and
+/// backward. From the pooling on, each has its own map.
 /// @tparam T float or bfloat16, the element of the maps (H,W,C).
 template <class T>
 class ConvBlock {
  public:
   /// Adds "name.conv.*" and "name.norm.*" to `parameters`, which must outlive the block.
-  /// @param input_gradient whether the input's gradient is wanted.
+  /// @param input_gradient whether backward() will compute the input's gradient.
   ConvBlock(Parameters& parameters, const std::string& name, const ConvBlockShape& shape, bool input_gradient,
             int threads);
 
@@ -54,44 +54,45 @@ class ConvBlock {
   MapShape mapShape() const { return {shape_.size, shape_.size, shape_.out_channels}; }
   int outputSize() const { return mapShape().pooledPositions() * shape_.out_channels; }
 
-  /// PyTorch's defaults.
+  /// Draws PyTorch's default initialisation.
   void initialise(core::Random& random);
 
   /// Must be called after the parameters have changed.
   void loadWeights();
   void loadRunningStatistics() { norm_.loadRunningStatistics(); }
 
-  /// Room for the maps that a training step of so many images keeps.
+  /// Makes room for the maps of a training step with this many images.
   void reserve(int images);
 
-  /// x (size,size,image) -> y (size,size,out), of which pool() makes an image's map with its goal (goal_channels) or
-  /// nullptr.
+  /// x (size,size,image) -> y (size,size,out). pool() then makes the map of one image from y and its goal
+  /// (goal_channels), which is nullptr if no goal joins.
   void convolve(int thread, const T* x, T* y) { convolution_.forward(thread, x, y); }
   void pool(int thread, int image, const T* y, const float* goal);
   void finishForward(int images, Normalisation normalisation);
-  /// Training's output of an image, (size/2,size/2,out), after finishForward().
+  /// Writes the training output of an image, (size/2,size/2,out). Call after finishForward().
   void output(int image, T* out) const;
 
-  /// Where the gradient of an image's output belongs, (size/2,size/2,out); sumOutputGradient() when it is there.
+  /// The place for the gradient of an image's output, (size/2,size/2,out). Call sumOutputGradient() after writing it.
   T* outputGradient(int image) { return &output_gradients_[std::size_t(image) * outputSize()]; }
   void sumOutputGradient(int image);
-  /// Joins the sums; backward() of any image may follow.
+  /// Joins the sums of all images. Must be called before unpool() and backward().
   void beginBackward(int images);
-  /// The gradient dy (size,size,out) of what convolve() gave: that of one image, or added to those of others.
+  /// Computes the gradient dy (size,size,out) of convolve()'s output from one image. @param add adds it to dy instead
+  /// of overwriting, for images that share a convolution.
   void unpool(int image, bool add, T* dy);
-  /// The convolutions of a share must come in order, from one thread.
-  /// x as in convolve(); dx (size,size,image) or nullptr.
+  /// Backward of convolve(). One thread must call it for the convolutions of a share, in order. x as in convolve(), dx
+  /// (size,size,image) or nullptr.
   void backward(int thread, int share, bool first_of_share, const T* x, const T* dy, T* dx);
-  /// Writes the gradients of all parameters, and dgoals (images, goal_channels) when there is a goal.
-  /// @param shares of the convolutions.
+  /// Writes the gradients of all parameters, and dgoals (images, goal_channels) if there is a goal.
+  /// @param shares as the calls of backward() used them.
   void finishBackward(int images, const ImageShares& shares, const Matrix& goals, Matrix& dgoals, int threads);
 
-  /// How predict() wants its input.
+  /// The layout of predict()'s input.
   MapLayout predictionLayout() const { return convolution_.predictionLayout(); }
-  /// Inference with running statistics: x (size,size,image) in predictionLayout(), goal as in pool(), y for what comes
-  /// in between -> out (size/2,size/2,out) in `out_layout`.
+  /// Inference with running statistics: x (size,size,image) in predictionLayout(), goal as in pool() -> out
+  /// (size/2,size/2,out) in `out_layout`. y (size,size,out) is scratch memory.
   void predict(int thread, const T* x, const float* goal, T* y, MapLayout out_layout, T* out);
-  /// The same bits with all threads on one image.
+  /// predict() with all threads on one image; the same bits.
   void predictOnAllThreads(const T* x, const float* goal, T* y, MapLayout out_layout, T* out, int threads);
 
  private:

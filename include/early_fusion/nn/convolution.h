@@ -14,20 +14,20 @@ struct ConvolutionShape {
   int width;
 };
 
-/// True where the processor computes in bfloat16 natively (avx512_bf16).
+/// Whether the processor computes in bfloat16 natively (avx512_bf16).
 bool processorHasBfloat16();
 
-/// A 3x3 convolution with stride 1, one pixel of zero padding and no bias, of one image a call: maps are (H,W,C), but
-/// for predictionLayout().
+/// A 3x3 convolution of one image with stride 1, one pixel of zero padding and no bias. Maps are (H,W,C), except those
+/// of predict().
 ///
-/// One image a call keeps a map in the cache of the core that made it, so images are what runs in parallel: several
-/// threads may call at a time, each with its own `thread`. The bits don't depend on the thread.
-/// @tparam T float or bfloat16, the element of the maps; weights' gradients are float.
+/// Images run in parallel, one a thread, so that a map stays in its core's cache. Several threads may call at the same
+/// time, each with its own `thread`. The bits do not depend on the thread.
+/// @tparam T float or bfloat16, the element of the maps. Gradients of the weights are float.
 template <class T>
 class Convolution {
  public:
-  /// @param input_gradient whether backwardInput() will be called. @param threads how many callers at a time.
-  /// @throws Error when the processor can't compute in T.
+  /// @param input_gradient whether backwardInput() will be called. @param threads the number of concurrent callers.
+  /// @throws Error if the processor cannot compute in T.
   Convolution(const ConvolutionShape& shape, bool input_gradient, int threads);
   ~Convolution();
   Convolution(Convolution&&) noexcept;
@@ -38,17 +38,17 @@ class Convolution {
   /// x (H,W,in) -> y (H,W,out).
   void forward(int thread, const T* x, T* y);
 
-  /// The same for inference, with maps in predictionLayout(). Where there are many channels of floats that is
-  /// Winograd's algorithm (Lavin and Gray, CVPR 2016), which takes less than half of the multiplications and rounds
-  /// differently, by about 1e-6 of the largest number.
+  /// The same for inference, with maps in predictionLayout(). With many channels of floats it uses Winograd's algorithm
+  /// (Lavin and Gray, CVPR 2016), which needs less than half of the multiplications. Its results differ by about 1e-6
+  /// of the largest number.
   void predict(int thread, const T* x, T* y);
   MapLayout predictionLayout() const;
 
-  /// The bits of predict(), with all threads on the one image; not to be called by several threads.
+  /// predict() with all threads on one image; the same bits. Must not be called by several threads at the same time.
   void predictOnAllThreads(const T* x, T* y);
 
-  /// Writes dweights, weightsGradientSize() numbers in a layout of the library's choice, from x (H,W,in) and
-  /// dy (H,W,out). Gradients in that layout may be added up; weightsGradient() makes OIHW of them.
+  /// Computes dweights from x (H,W,in) and dy (H,W,out): weightsGradientSize() numbers in a layout that oneDNN chooses.
+  /// Gradients in this layout may be added. weightsGradient() converts them to OIHW.
   void backwardWeights(int thread, const T* x, const T* dy, float* dweights);
   std::size_t weightsGradientSize() const;
   void weightsGradient(float* dweights, float* oihw);

@@ -11,10 +11,10 @@ class Dropout {
  public:
   explicit Dropout(double rate) : rate_(rate) {}
 
-  /// x (rows,C), in place. @param seed decides which numbers: the same seed, the same ones.
+  /// x (rows,C), in place. @param seed determines which numbers are zeroed.
   void forward(Matrix& x, int rows, std::uint64_t seed);
 
-  /// dx (rows,C), in place, with the mask of the last forward().
+  /// dx (rows,C), in place. Uses the mask of the last forward().
   void backward(Matrix& dx, int rows) const;
 
  private:

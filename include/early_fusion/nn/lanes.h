@@ -9,16 +9,16 @@
 
 namespace early_fusion::nn {
 
-/// The upper half of a float: its range, 8 significant bits. Storage only; arithmetic is done in float.
+/// The upper half of a float: the range of a float with 8 significant bits. For storage; arithmetic is done in float.
 struct bfloat16 {
   std::uint16_t bits;
 };
 
-/// Channels that the kernels handle at a time: maps are (H,W,C) with C a multiple of this.
+/// The number of channels that a kernel handles at a time. Maps are (H,W,C), where C is a multiple of it.
 inline constexpr int kLanes = 16;
 
-// Vectors of any processor: the compiler maps them to one AVX-512, two AVX2 or four SSE or NEON registers. Where that
-// is more than one, GCC warns of how it would pass them between functions; these are all inlined.
+// GCC's vector types: the compiler maps them to one AVX-512, two AVX2 or four SSE or NEON registers. If it needs more
+// than one, GCC warns about how it would pass them between functions. All functions here are inlined.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -39,7 +39,7 @@ inline Lanes loadLanes(const float* from) { return loadVector<Lanes>(from); }
 inline void storeVector(void* to, const Lanes& v) { std::memcpy(to, &v, sizeof v); }
 inline void storeVector(void* to, const HalfLanes& v) { std::memcpy(to, &v, sizeof v); }
 
-// GCC 12 makes poor code of conversions between widths, so where it matters most they are spelled out.
+// GCC 12 compiles conversions between widths to slow code. The most important ones use intrinsics.
 #if defined(__AVX512BW__)
 
 inline Lanes loadLanes(const bfloat16* from) {
@@ -77,14 +77,14 @@ inline HalfLanes lowHalves(const IntLanes& v) { return __builtin_convertvector(v
 
 #endif
 
-/// What a map of T stores of v: for bfloat16 the nearest, ties to even; a NaN stays one.
+/// v converted to the elements of a map of T. For bfloat16: rounded to nearest, ties to even; NaN stays NaN.
 template <class T>
 inline auto pack(const Lanes& v) {
   if constexpr (sizeof(T) == sizeof(float)) {
     return v;
   } else {
 #if defined(__AVX512BF16__)
-    return (HalfLanes)_mm512_cvtneps_pbh((__m512)v);  // takes what is below 2^-126 for 0
+    return (HalfLanes)_mm512_cvtneps_pbh((__m512)v);  // treats numbers below 2^-126 as 0
 #else
     const IntLanes bits = loadVector<IntLanes>(&v);
     const IntLanes rounded = (bits + 0x7fff + ((bits >> 16) & 1)) >> 16;

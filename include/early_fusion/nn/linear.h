@@ -14,16 +14,16 @@ class Linear {
   /// Adds "name.weight" (out,in) and "name.bias" (out) to `parameters`, which must outlive the layer.
   Linear(Parameters& parameters, const std::string& name, int inputs, int outputs, int threads);
 
-  /// PyTorch's defaults.
+  /// Draws PyTorch's default initialisation.
   void initialise(core::Random& random);
 
   /// x (rows,in) -> y (rows,out).
   void forward(const Matrix& x, int rows, Matrix& y) const;
 
-  /// One row, x (in) -> y (out): the same bits whoever calls it.
+  /// One row, x (in) -> y (out). The bits do not depend on the thread; they may differ from those of forward().
   void forwardRow(const float* x, float* y) const;
 
-  /// x (rows,in), dy (rows,out) -> the parameters' gradients and dx (rows,in), nullptr where it is not wanted.
+  /// x (rows,in), dy (rows,out) -> the parameters' gradients and dx (rows,in). dx may be nullptr.
   void backward(const Matrix& x, const Matrix& dy, int rows, Matrix* dx);
 
  private:

@@ -6,13 +6,13 @@
 
 namespace early_fusion::nn {
 
-/// How the numbers of one image's map lie in memory.
+/// The order of the numbers of one image's map in memory.
 enum class MapLayout {
   kChannelsLast,  ///< (height, width, channels)
   kBlocked,       ///< (channels / kLanes, height, width, kLanes)
 };
 
-/// A map of one image before pooling; even edges, channels a multiple of kLanes.
+/// The shape of one image's map before pooling. Edges are even; channels are a multiple of kLanes.
 struct MapShape {
   int height;
   int width;
@@ -23,9 +23,9 @@ struct MapShape {
   int pooledPositions() const { return height / 2 * (width / 2); }
   MapShape pooled(MapLayout pooled_layout) const { return {height / 2, width / 2, channels, pooled_layout}; }
 
-  /// From a position's numbers to the next one's, within kLanes channels.
+  /// The distance from one position to the next, within a group of kLanes channels.
   std::size_t stride() const { return layout == MapLayout::kBlocked ? kLanes : channels; }
-  /// Where channels [c, c + kLanes) of the first position are.
+  /// The offset of channels [c, c + kLanes) of the first position.
   std::size_t firstOf(int c) const { return layout == MapLayout::kBlocked ? std::size_t(c) * positions() : c; }
   std::size_t at(int position, int channel) const {
     return firstOf(channel / kLanes * kLanes) + position * stride() + channel % kLanes;

@@ -15,11 +15,11 @@ struct TensorSlice {
   std::size_t size;
 };
 
-/// All trainable tensors of a network in one flat vector, their gradients in another, and the buffers (running
-/// statistics) in a third: an optimizer, a checkpoint and a test see vectors, a layer sees its slices.
+/// All trainable tensors of a network in one flat vector, their gradients in a second, and the buffers (running
+/// statistics) in a third. The optimizer, checkpoints and tests use the vectors; a layer uses its slices.
 class Parameters {
  public:
-  /// Adding is for construction: it moves the vectors' storage. Returns the offset.
+  /// Adds a tensor and returns its offset. Only for construction, because it moves the vectors' storage.
   std::size_t addParameter(const std::string& name, const std::vector<std::int64_t>& shape);
   std::size_t addBuffer(const std::string& name, const std::vector<std::int64_t>& shape);
 

@@ -6,20 +6,21 @@
 
 namespace early_fusion::nn {
 
-/// A bias that depends on where a pixel is: (row case, column case, channel), 3x3 cases. Case 0 is the first row
-/// (column), 2 the last, 1 all between: what zero padding does to a constant input of a 3x3 convolution.
+/// The number of biases of a 3x3 convolution whose input is constant. Zero padding makes the bias depend on the
+/// position: (row case, column case, channel) with 3x3 cases. Case 0 is the first row (column), 2 the last, 1 all
+/// others.
 inline constexpr int kBorderCases = 9;
 
 inline int borderCase(int pixel, int size) { return pixel == 0 ? 0 : pixel == size - 1 ? 2 : 1; }
 
-/// Adds the bias, takes the maximum of every 2x2 window, and ReLU: the pass after a convolution, in training.
-/// y (H,W,C), bias (9,C) -> z (H/2,W/2,C), choice (H/2,W/2,C), 2 * row + column of the greatest in its window; writes
-/// to sums (2,C) the sum of z and of its squares.
+/// The training pass after a convolution: adds the bias, takes the maximum of every 2x2 window, and applies ReLU.
+/// y (H,W,C), bias (9,C) -> z (H/2,W/2,C) and choice (H/2,W/2,C), which is 2 * row + column of the maximum in its
+/// window. Writes the sums of z and of z^2 to sums (2,C).
 template <class T>
 void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std::uint8_t* choice, double* sums);
 
-/// The same for inference, with batch norm's scale and shift (C) applied: x = scale * z + shift, pooled rows
-/// [first_row, last_row) only. y in the shape's layout, x in `pooled_layout`; everything else is channels-last.
+/// The inference pass after a convolution, with batch norm's scale and shift (C): x = scale * z + shift, for the pooled
+/// rows [first_row, last_row). y has the shape's layout, x has `pooled_layout`; all else is channels-last.
 template <class T>
 void poolNormalise(const MapShape& shape, const T* y, const float* bias, const float* scale, const float* shift,
                    int first_row, int last_row, MapLayout pooled_layout, T* x);
@@ -28,20 +29,21 @@ void poolNormalise(const MapShape& shape, const T* y, const float* bias, const f
 template <class T>
 void normalise(const T* z, int positions, int channels, const float* scale, const float* shift, T* x);
 
-/// Writes to sums (2,C) the sum of dx and of dx * z over positions; both (positions, C).
+/// Writes the sums of dx and of dx * z over the positions to sums (2,C). dx and z are (positions, C).
 template <class T>
 void sumGradients(const T* dx, const T* z, int positions, int channels, double* sums);
 
-/// The gradient of the pooled map as a function of the block's output's: dz = a * dx + b * z + c, all (C).
+/// Coefficients (C) of the pooled map's gradient: dz = a * dx + b * z + c, where dx is the gradient of the block's
+/// output.
 struct NormGradient {
   const float* a;
   const float* b;
   const float* c;
 };
 
-/// Backward of poolForward() and of batch norm: dx, z, choice (H/2,W/2,C) -> dy (H,W,C), and border_sums (9,C), the
-/// sum of this dy over each border case: the gradient of `bias`.
-/// @param add whether to add to what is in dy: maps pooled with several biases have the sum of their gradients.
+/// Backward of poolForward() and of batch norm: dx, z, choice (H/2,W/2,C) -> dy (H,W,C). Writes the sum of this dy over
+/// each border case, which is the gradient of `bias`, to border_sums (9,C).
+/// @param add adds to dy instead of overwriting it: the gradients of maps that share a convolution are summed.
 template <class T>
 void poolBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice, const NormGradient& norm,
                   bool add, T* dy, double* border_sums);

@@ -10,15 +10,15 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 
 /// The part of a 3x3 convolution whose input channels are a vector tiled over the map ("early fusion").
 ///
-/// Such channels are constant over the image, so what they add to the convolution's output is one of nine biases,
-/// according to which taps zero padding cuts off: exact, and it costs nothing per pixel. Without goal channels only the
+/// These channels are constant over the map. So their part of the convolution's output is one of nine biases, depending
+/// on the taps that zero padding cuts off. This is exact and costs nothing per pixel. Without goal channels only the
 /// convolution's own bias is left.
 class TiledGoal {
  public:
   /// @param goal_channels may be 0.
   TiledGoal(int goal_channels, int out_channels);
 
-  /// @param weights of the whole convolution, OIHW (out, in_channels, 3, 3), in which the goal's channels come last.
+  /// @param weights of the whole convolution, OIHW (out, in_channels, 3, 3). The goal's channels are the last ones.
   void setWeights(const float* weights, int in_channels);
 
   /// goal (goal_channels), bias (out) -> border_bias (9,out).
@@ -26,11 +26,11 @@ class TiledGoal {
 
   void reserve(int images);
 
-  /// Where the gradient of an image's border_bias goes, (9,out).
+  /// The place for the gradient of an image's border_bias, (9,out).
   double* borderSums(int image) { return border_sums_.row(image).data(); }
 
-  /// From all images' border sums: dbias (out), the goal's channels of dweights (OIHW as in setWeights()), and dgoals.
-  /// @param goals and dgoals (images, goal_channels). Every output is written, not added to.
+  /// Computes dbias (out), the goal's channels of dweights (OIHW as in setWeights()) and dgoals from all border sums.
+  /// Overwrites all outputs. @param goals and dgoals (images, goal_channels).
   void backward(const Matrix& goals, int images, int in_channels, float* dbias, float* dweights, Matrix& dgoals);
 
  private:
@@ -39,7 +39,7 @@ class TiledGoal {
   int goal_channels_;
   int out_channels_;
   Matrix tap_weights_;     // (9 taps * out, goal)
-  Matrix border_weights_;  // (9 cases * goal, out): what a goal channel adds to an output in each case
+  Matrix border_weights_;  // (9 cases * goal, out): for each case, the weight from a goal channel to an output
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> border_sums_;  // (images, 9 cases * out)
   Matrix tap_sums_;                                                                     // (images, 9 taps * out)
   Matrix tap_gradients_;                                                                // as tap_weights_
