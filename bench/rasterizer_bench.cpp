@@ -26,7 +26,7 @@ Eigen::Isometry3d wanderingCamera(int frame) {
 /// Pictures a second; the argument is the number of objects. Every thread has a rasterizer of its own.
 void render(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
-  rasterizer.setScene(handmadeScene(static_cast<int>(state.range(0)), kItems), ~0u);
+  rasterizer.setObjects(handmadeScene(static_cast<int>(state.range(0)), kItems));
   core::Image image;
   int frame = 1000 * state.thread_index();
   for (auto _ : state) {
@@ -40,9 +40,10 @@ BENCHMARK(render)->ArgName("objects")->Arg(4)->Arg(8)->Arg(12)->Threads(1)->Thre
 /// The shadow map drawn anew, as at the begin of an episode and after COLLECT and REMOVE.
 void changeScene(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
-  const std::vector<Instance> scene = handmadeScene(static_cast<int>(state.range(0)), kItems);
-  InstanceMask present = ~0u;
-  for (auto _ : state) rasterizer.setScene(scene, present ^= 1u);
+  const std::vector<ObjectPose> all = handmadeScene(static_cast<int>(state.range(0)), kItems);
+  const std::vector<ObjectPose> but_one(all.begin() + 1, all.end());
+  bool complete = false;
+  for (auto _ : state) rasterizer.setObjects((complete = !complete) ? all : but_one);
 }
 BENCHMARK(changeScene)->ArgName("objects")->Arg(8);
 

@@ -31,7 +31,7 @@ core::Image sheet(const std::vector<core::Image>& images) {
 core::Image draw(sim::Rasterizer& rasterizer, const sim::World& world, const PlayedStep& step,
                  const PictureStyle& style) {
   core::Image image;
-  rasterizer.setScene(step.instances, step.state.present);
+  rasterizer.setObjects(sim::presentObjects(world, step.instances, step.state.present));
   rasterizer.render(world.rig.worldFromCamera(step.state.orientation), image);
   model::Annotation annotation;
   if (style.annotate) {

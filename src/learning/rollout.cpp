@@ -49,7 +49,7 @@ void RolloutRunner::run(const std::vector<std::uint64_t>& episodes, Agent& agent
 void RolloutRunner::observe(Seat& seat, bool draw) {
   const sim::EpisodeState& state = seat.episode.state();
   if (draw) {
-    seat.rasterizer.setScene(seat.episode.setup().instances, state.present);
+    seat.rasterizer.setObjects(sim::presentObjects(world_, seat.episode.setup().instances, state.present));
     seat.rasterizer.render(world_.rig.worldFromCamera(state.orientation), seat.image);
   }
   seat.recorder.record(state, seat.image.rgb);

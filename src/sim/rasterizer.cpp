@@ -42,17 +42,12 @@ Projection perspective(const Viewpoint& viewpoint) {
   return projection;
 }
 
-bool samePlace(const Instance& a, const Instance& b) {
-  return a.item == b.item && a.x == b.x && a.y == b.y && a.theta == b.theta;
-}
-
 }  // namespace
 
 class Rasterizer::Implementation {
  public:
   Implementation(const World& world, int image_size)
-      : world_(world),
-        image_size_(checkedSize(image_size)),
+      : image_size_(checkedSize(image_size)),
         centre_(static_cast<float>(image_size * kSubsamples)),
         focal_length_(static_cast<float>(2 * kSubsamples * focalLength(image_size, world.options.horizontal_fov_deg))),
         assets_(sharedRenderAssets(world)),
@@ -60,20 +55,16 @@ class Rasterizer::Implementation {
         samples_(2 * image_size, 2 * image_size, true),
         shader_(*assets_, shadow_map_, image_size) {}
 
-  void setScene(const std::vector<Instance>& instances, InstanceMask present) {
-    std::vector<Instance> standing;
-    for (std::size_t i = 0; i < instances.size(); ++i) {
-      if (present >> i & 1u) standing.push_back(instances[i]);
-    }
-    if (std::equal(standing.begin(), standing.end(), standing_.begin(), standing_.end(), samePlace)) return;
-    standing_ = std::move(standing);
+  void setObjects(const std::vector<ObjectPose>& objects) {
+    if (objects == objects_) return;
+    objects_ = objects;
     last_image_.rgb.clear();
-    objects_.clear();
-    for (const Instance& instance : standing_) {
-      assert(instance.item >= 0 && instance.item < world_.objects.size());
-      objects_.push_back({&assets_->objects[instance.item], renderPose(worldFromObject(world_, instance))});
+    drawn_.clear();
+    for (const ObjectPose& object : objects_) {
+      assert(object.item >= 0 && object.item < static_cast<int>(assets_->objects.size()));
+      drawn_.push_back({&assets_->objects[object.item], renderPose(object.world_from_object)});
     }
-    shadow_map_.draw(objects_);
+    shadow_map_.draw(drawn_);
   }
 
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
@@ -92,7 +83,7 @@ class Rasterizer::Implementation {
     const Projection projection = perspective(viewpoint);
     samples_.clear(0.f);
     drawer_.clear();
-    for (const ShadowMap::Caster& object : objects_) {
+    for (const ShadowMap::Caster& object : drawn_) {
       drawer_.draw(*object.mesh, object.world_from_mesh, projection, samples_);
     }
     for (const RenderMesh& cluster : assets_->kitchen) drawer_.draw(cluster, identity_, projection, samples_);
@@ -103,7 +94,6 @@ class Rasterizer::Implementation {
     return 0.5 * image_size / std::tan(0.5 * fov_deg * 3.14159265358979323846 / 180.0);
   }
 
-  const World& world_;
   int image_size_;
   float centre_;        // of the picture [subsamples]
   float focal_length_;  // [subsamples]
@@ -112,9 +102,9 @@ class Rasterizer::Implementation {
   SampleBuffer samples_;
   MeshDrawer drawer_;
   FragmentShader shader_;
-  std::vector<Instance> standing_;
-  std::vector<ShadowMap::Caster> objects_;
-  core::Image last_image_;  // empty where the scene has changed since
+  std::vector<ObjectPose> objects_;
+  std::vector<ShadowMap::Caster> drawn_;
+  core::Image last_image_;  // empty where the objects have changed since
   Eigen::Isometry3d last_pose_ = Eigen::Isometry3d::Identity();
   const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());
 };
@@ -126,9 +116,7 @@ Rasterizer::~Rasterizer() = default;
 Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 
-void Rasterizer::setScene(const std::vector<Instance>& instances, InstanceMask present) {
-  implementation_->setScene(instances, present);
-}
+void Rasterizer::setObjects(const std::vector<ObjectPose>& objects) { implementation_->setObjects(objects); }
 
 void Rasterizer::render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
   implementation_->render(world_from_camera, image);

@@ -102,6 +102,15 @@ Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance) 
          Eigen::AngleAxisd(instance.theta, Eigen::Vector3d::UnitZ());
 }
 
+std::vector<ObjectPose> presentObjects(const World& world, const std::vector<Instance>& instances,
+                                       InstanceMask present) {
+  std::vector<ObjectPose> objects;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (present >> i & 1u) objects.push_back({instances[i].item, worldFromObject(world, instances[i])});
+  }
+  return objects;
+}
+
 EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random) {
   task.validate("task '" + task.name + "'");
   EpisodeSetup setup;

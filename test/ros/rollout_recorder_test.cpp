@@ -54,7 +54,7 @@ class RolloutRecorderTest : public testing::Test {
     std_msgs::Header header;
     header.stamp = ::ros::Time(100, stamp_++);
     core::Image image;
-    rasterizer_.setScene(episode.setup().instances, episode.state().present);
+    rasterizer_.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
     rasterizer_.render(world_->rig.worldFromCamera(episode.state().orientation), image);
     Messages messages{imageMessage(image, header), requestMessage(episode, key, vocabulary, header),
                       sceneMessage(episode, key, task_.steps, vocabulary, previous, header), Action()};

@@ -127,7 +127,7 @@ TEST_F(SimulatorNodeTest, TheImageIsTheRasterizersOfThatEpisode) {
   const sim::Episode episode(*world_, task, sim::sampleEpisode(*world_, task, 3, 5));
   sim::Rasterizer rasterizer(*world_, 128);
   core::Image expected;
-  rasterizer.setScene(episode.setup().instances, episode.state().present);
+  rasterizer.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
   rasterizer.render(world_->rig.worldFromCamera(episode.state().orientation), expected);
   EXPECT_EQ(images_[scenes_.back()->header.stamp]->data, expected.rgb);
 }

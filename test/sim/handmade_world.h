@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "early_fusion/core/random.h"
-#include "early_fusion/sim/scene.h"
+#include "early_fusion/sim/object_pose.h"
 #include "early_fusion/sim/world.h"
 
 /// Worlds made by the program, for tests and benchmarks of the rasterizer that are to depend on no file.
@@ -144,15 +144,20 @@ inline std::shared_ptr<World> handmadeKitchen(int items, int cells) {
   return world;
 }
 
-/// `count` instances on a loose grid over the counter of handmadeKitchen().
-inline std::vector<Instance> handmadeScene(int count, int items) {
-  std::vector<Instance> instances;
+/// An object upright on the counter of handmadeKitchen().
+inline ObjectPose onCounter(int item, double x, double y, double theta) {
+  return {item, Eigen::Translation3d(x, y, 0.9) * Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ())};
+}
+
+/// `count` objects on a loose grid over the counter of handmadeKitchen().
+inline std::vector<ObjectPose> handmadeScene(int count, int items) {
+  std::vector<ObjectPose> objects;
   const int columns = (count + 1) / 2;
   for (int i = 0; i < count; ++i) {
     const double y = -0.55 + 1.1 * (i / 2 + 0.5) / columns;
-    instances.push_back({i % items, i % 2 == 0 ? 0.68 : 0.93, y, 0.7 * i});
+    objects.push_back(onCounter(i % items, i % 2 == 0 ? 0.68 : 0.93, y, 0.7 * i));
   }
-  return instances;
+  return objects;
 }
 
 }  // namespace early_fusion::sim

@@ -237,11 +237,10 @@ TEST(Rasterizer, ObjectsCastSoftShadowsAwayFromTheLight) {
   auto world = handmadeKitchen(1, 3);
   const Eigen::Isometry3d camera = lookAlong({0, 0, 1.35}, {0.8, 0, -0.4});
   Rasterizer rasterizer(*world, kSize);
-  const std::vector<Instance> scene = {{0, 0.75, 0.1, 0.0}};
   core::Image with, without;
-  rasterizer.setScene(scene, 1u);
+  rasterizer.setObjects({onCounter(0, 0.75, 0.1, 0.0)});
   rasterizer.render(camera, with);
-  rasterizer.setScene(scene, 0u);
+  rasterizer.setObjects({});
   rasterizer.render(camera, without);
   const RayCaster caster(*world, kSize);
   const auto brightness = [&](double x, double y) {
@@ -264,20 +263,25 @@ TEST(Rasterizer, ObjectsCastSoftShadowsAwayFromTheLight) {
   EXPECT_GT(half_lit, 0) << "the shadow has a hard edge";
 }
 
-TEST(Rasterizer, OnlyPresentObjectsAreDrawn) {
+TEST(Rasterizer, DrawsTheObjectsThatWereSetLast) {
   auto world = handmadeKitchen(4, 3);
   const Eigen::Isometry3d camera = lookAlong({0, 0, 1.35}, {0.8, 0, -0.4});
-  const std::vector<Instance> scene = handmadeScene(4, 4);
-  const auto render = [&](const std::vector<Instance>& instances, InstanceMask present) {
-    Rasterizer rasterizer(*world, kSize);
+  const std::vector<ObjectPose> scene = handmadeScene(4, 4);
+  Rasterizer used(*world, kSize);
+  const auto drawn = [&](Rasterizer& rasterizer, const std::vector<ObjectPose>& objects) {
     core::Image image;
-    rasterizer.setScene(instances, present);
+    rasterizer.setObjects(objects);
     rasterizer.render(camera, image);
     return image.rgb;
   };
-  EXPECT_TRUE(render(scene, 0b0101u) == render({scene[0], scene[2]}, 0b11u));
-  EXPECT_FALSE(render(scene, 0b0101u) == render(scene, 0b0100u));
-  EXPECT_TRUE(render(scene, 0u) == render({}, 0u));
+  const auto fresh = [&](const std::vector<ObjectPose>& objects) {
+    Rasterizer rasterizer(*world, kSize);
+    return drawn(rasterizer, objects);
+  };
+  drawn(used, scene);
+  EXPECT_TRUE(drawn(used, {scene[0], scene[2]}) == fresh({scene[0], scene[2]}));
+  EXPECT_FALSE(drawn(used, {scene[2]}) == fresh({scene[0], scene[2]}));
+  EXPECT_TRUE(drawn(used, {}) == fresh({}));
 }
 
 /// A picture for each of some steps: the camera moves, and halfway an object goes.
@@ -286,7 +290,9 @@ std::vector<std::vector<std::uint8_t>> episode(const World& world) {
   core::Image image;
   std::vector<std::vector<std::uint8_t>> pictures;
   for (int step = 0; step < 24; ++step) {
-    rasterizer.setScene(handmadeScene(8, 4), step < 12 ? 0xffu : 0xfbu);
+    std::vector<ObjectPose> objects = handmadeScene(8, 4);
+    if (step >= 12) objects.erase(objects.begin() + 2);
+    rasterizer.setObjects(objects);
     rasterizer.render(lookAlong({0, 0, 1.35}, {1, 0.05 * (step - 12), -0.4}), image);
     pictures.push_back(image.rgb);
   }
@@ -310,11 +316,11 @@ TEST(Rasterizer, WhatWasDrawnBeforeLeavesNoTrace) {
   const Eigen::Isometry3d camera = lookAlong({0, 0, 1.35}, {1, 0, -0.4});
   Rasterizer used(*world, kSize), fresh(*world, kSize);
   core::Image first, again, expected;
-  used.setScene(handmadeScene(12, 4), ~0u);
+  used.setObjects(handmadeScene(12, 4));
   used.render(lookAlong({0.8, 0, 1.0}, {1, 1, 0}), first);
-  used.setScene(handmadeScene(4, 4), ~0u);
+  used.setObjects(handmadeScene(4, 4));
   used.render(camera, again);
-  fresh.setScene(handmadeScene(4, 4), ~0u);
+  fresh.setObjects(handmadeScene(4, 4));
   fresh.render(camera, expected);
   EXPECT_TRUE(again.rgb == expected.rgb);
 }
@@ -323,7 +329,7 @@ TEST(Rasterizer, RenderAllocatesNothingOnceWarm) {
   auto world = handmadeKitchen(4, 6);
   Rasterizer rasterizer(*world, kSize);
   core::Image image;
-  rasterizer.setScene(handmadeScene(8, 4), ~0u);
+  rasterizer.setObjects(handmadeScene(8, 4));
   const auto look = [&](int step) { rasterizer.render(lookAlong({0, 0, 1.35}, {1, 0.05 * (step - 12), -0.4}), image); };
   for (int step = 0; step < 24; ++step) look(step);
   const long before = allocations;

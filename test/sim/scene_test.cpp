@@ -30,6 +30,15 @@ TEST(Scene, StandsAnInstanceOnTheCounterTurnedAboutZ) {
   EXPECT_TRUE((pose * Eigen::Vector3d(0.1, 0, 0.05)).isApprox(Eigen::Vector3d(0.7, -0.1, 0.95), 1e-9));
 }
 
+TEST(Scene, TellsThePosesOfTheInstancesThatArePresent) {
+  const std::vector<Instance> instances = {{0, 0.7, -0.2, 1}, {1, 0.8, 0, 2}, {2, 0.9, 0.2, 3}};
+  const std::vector<ObjectPose> objects = presentObjects(world(), instances, 0b101u);
+  ASSERT_EQ(objects.size(), 2u);
+  EXPECT_TRUE(objects[0] == (ObjectPose{0, worldFromObject(world(), instances[0])}));
+  EXPECT_TRUE(objects[1] == (ObjectPose{2, worldFromObject(world(), instances[2])}));
+  EXPECT_TRUE(presentObjects(world(), instances, 0).empty());
+}
+
 TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
   const HorizontalRectangle& area = world().placement;
   for (std::uint64_t episode = 0; episode < 100; ++episode) {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "early_fusion/core/image.h"
-#include "early_fusion/sim/scene.h"
+#include "early_fusion/sim/object_pose.h"
+#include "early_fusion/sim/world.h"
 
 namespace early_fusion::sim {
 
@@ -22,8 +23,8 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  /// Which objects stand where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
-  void setScene(const std::vector<Instance>& instances, InstanceMask present);
+  /// Sets which objects are drawn, and where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
+  void setObjects(const std::vector<ObjectPose>& objects);
 
   /// Costs a copy where neither the scene nor the camera has moved since the last picture.
   /// @param world_from_camera optical frame (z forward, x right, y down) in the world.

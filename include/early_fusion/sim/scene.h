@@ -6,6 +6,7 @@
 
 #include "early_fusion/core/random.h"
 #include "early_fusion/core/vocabulary.h"
+#include "early_fusion/sim/object_pose.h"
 #include "early_fusion/sim/task.h"
 #include "early_fusion/sim/world.h"
 
@@ -34,6 +35,10 @@ struct EpisodeSetup {
 };
 
 Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance);
+
+/// The poses of the instances that are present, in their order: what the rasterizer draws.
+std::vector<ObjectPose> presentObjects(const World& world, const std::vector<Instance>& instances,
+                                       InstanceMask present);
 
 /// Draws types, collision-free poses, the request and the first orientation, each uniformly.
 /// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
