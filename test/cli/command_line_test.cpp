@@ -106,8 +106,9 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
       {"render --step 48 --out " + path("x.png"), "--step"},
-      {"render --size 20 --out " + path("x.png"), "--size: Value 20 not a multiple of 16"},
-      {"render --size 1008 --out " + path("x.png"), "--size: Value 1008 not in range 16 to 992"},
+      {"render --size 20 --out " + path("x.png"), "size: '20' is not a multiple of 16"},
+      {"render --size 1008 --out " + path("x.png"),
+       "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
       {"evaluate --policy expert --episodes 0", "episodes"},
   };

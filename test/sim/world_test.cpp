@@ -111,7 +111,7 @@ TEST(World, NamesTheKeyOfAMistake) {
   expectError("world.yaml", std::string(kWorldYaml) + "colour: red\n", {"world.yaml", "colour"});
   expectError("world.yaml", std::string(kWorldYaml) + "clearance: wide\n", {"world.yaml", "clearance", "wide"});
   expectError("world.yaml", std::string(kWorldYaml) + "image_size: 100\n",
-              {"world.yaml", "image_size is 100", "multiple of 16"});
+              {"world.yaml", "image_size: '100'", "a multiple of 16"});
   expectError("world.yaml", std::string(kWorldYaml) + "horizontal_fov_deg: 180\n", {"horizontal_fov_deg", "180"});
   expectError("world.yaml", std::string(kWorldYaml) + "pan_joint: neck\n", {"rig.urdf", "no joint 'neck'"});
   EXPECT_NE(errorOf([] { loadWorld("/no/such/world.yaml"); }).find("/no/such/world.yaml"), std::string::npos);

@@ -12,11 +12,12 @@ class Node;
 
 namespace early_fusion::core {
 
-/// One setting, declared once: name, unit, range and help serve YAML files, the command line and ROS parameters alike.
+/// One setting, declared once: name, unit, range and help serve YAML files, the command line, ROS parameters and
+/// structs that a program fills alike.
 struct Option {
   std::string name;
   std::string unit;     ///< empty when it has none
-  std::string range;    ///< for a reader: "[1, 4096]", "paper | fast", "true | false"
+  std::string range;    ///< for a reader: "[1, 4096]", "a multiple of 16 in [16, 256]", "paper | fast", "true | false"
   std::string initial;  ///< the default, as text
   std::string help;
   std::function<void(const std::string& text)> set;  ///< @throws Error with the reason only
@@ -33,6 +34,9 @@ class OptionSet {
   explicit OptionSet(std::string title) : title_(std::move(title)) {}
 
   void add(const std::string& name, int& field, int low, int high, const std::string& unit, const std::string& help);
+  /// A whole number in [low, high] that `divisor` divides.
+  void addMultiple(const std::string& name, int& field, int divisor, int low, int high, const std::string& unit,
+                   const std::string& help);
   void add(const std::string& name, double& field, double low, double high, const std::string& unit,
            const std::string& help);
   void add(const std::string& name, std::uint64_t& field, const std::string& help);
@@ -51,6 +55,9 @@ class OptionSet {
   /// @param source where the value comes from ("config/tasks/simple.yaml", "--channels", "/trainer/channels").
   /// @throws Error naming source, key, value and the allowed range; for an unknown name, the known ones.
   void set(const std::string& name, const std::string& text, const std::string& source);
+
+  /// Checks the fields as they stand: for a struct that a program has filled. @throws Error as set() does.
+  void validate(const std::string& source);
 
   /// Sets every key of a YAML map. @throws Error naming `file` and the line, for unknown keys and bad values too.
   void setFromYaml(const YAML::Node& map, const std::string& file);
