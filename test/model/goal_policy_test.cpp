@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/core/file.h"
 #include "early_fusion/nn/adam.h"
 #include "early_fusion/nn/convolution.h"
 #include "policy_batches.h"
@@ -411,15 +410,6 @@ TEST(LoadPolicy, NamesWhatIsWrongWithATensor) {
     const std::string error = loadErrorAfter(change);
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
-}
-
-TEST(PolicyOptions, ShippedFilesHoldTheDefaults) {
-  PolicyOptions shipped;
-  shipped.channels = 0;
-  shipped.image_size = 0;
-  shipped.options().setFromYamlFile(core::shareFolder() + "/config/models/early_fusion.yaml");
-  PolicyOptions defaults;
-  EXPECT_EQ(shipped.options().toYaml(), defaults.options().toYaml());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "early_fusion/sim/world.h"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include "test_world.h"
 
@@ -107,6 +108,14 @@ TEST(World, OfThePackageHoldsSixteenObjectsOnTheCounter) {
   EXPECT_GT(world->kitchen.size(), 4u);
 }
 
+TEST(World, TheShippedFileHoldsEveryDefault) {
+  const std::string file = core::shareFolder() + "/config/world.yaml";
+  WorldOptions shipped, defaults;
+  shipped.options().setFromYamlFile(file);
+  EXPECT_EQ(shipped.options().toYaml(), defaults.options().toYaml());
+  EXPECT_EQ(core::loadYamlFile(file).size(), defaults.options().options().size()) << "not every key is there";
+}
+
 TEST(World, NamesTheKeyOfAMistake) {
   expectError("world.yaml", std::string(kWorldYaml) + "colour: red\n", {"world.yaml", "colour"});
   expectError("world.yaml", std::string(kWorldYaml) + "clearance: wide\n", {"world.yaml", "clearance", "wide"});
@@ -120,7 +129,7 @@ TEST(World, NamesTheKeyOfAMistake) {
 TEST(World, RefusesACounterThatIsTooSmall) {
   expectError("world.yaml", replaced(kWorldYaml, "placement_width: 1.2", "placement_width: 3.3"),
               {"world.yaml", "placement_width is 3.3 m", "only 3.2 m"});
-  expectError("world.yaml", std::string(kWorldYaml) + "placement_depth: 0.8\n",
+  expectError("world.yaml", replaced(kWorldYaml, "placement_depth: 0.5", "placement_depth: 0.8"),
               {"world.yaml", "placement_depth is 0.8 m", "only 0.75 m"});
 }
 

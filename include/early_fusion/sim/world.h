@@ -11,7 +11,7 @@
 
 namespace early_fusion::sim {
 
-/// config/world.yaml: which files make the world, and how the camera sees it.
+/// A world file: which files make the world, and how the camera sees it. The defaults are those of config/world.yaml.
 struct WorldOptions {
   std::string objects = "objects.yaml";
   std::string kitchen_urdf = "../urdf/kitchen.urdf";
@@ -20,8 +20,8 @@ struct WorldOptions {
   std::string tilt_joint = "tilt_joint";
   std::string optical_frame = "camera_optical_frame";
   std::string counter_link = "counter";  ///< its collision box carries the objects
-  double placement_width = 1.6;          ///< [m] along y, centred on the counter: where objects' centres may lie
-  double placement_depth = 0.5;          ///< [m] along x, likewise
+  double placement_width = 1.1;          ///< [m] along y, centred on the counter: where objects' centres may lie
+  double placement_depth = 0.58;         ///< [m] along x, likewise
   double clearance = 0.005;              ///< [m] between two objects
   int image_size = 128;                  ///< [px]
   double horizontal_fov_deg = 60.0;
