@@ -48,6 +48,13 @@ core::OptionSet WorldOptions::options() {
   return set;
 }
 
+WorldUrdfs findUrdfs(const std::string& world_file) {
+  const std::string yaml_file = orShipped(world_file);
+  WorldOptions options;
+  options.options().setFromYamlFile(yaml_file);
+  return {core::resolvePath(yaml_file, options.camera_urdf), core::resolvePath(yaml_file, options.kitchen_urdf)};
+}
+
 std::shared_ptr<const World> loadWorld(const std::string& world_file) {
   const std::string yaml_file = orShipped(world_file);
   auto world = std::make_shared<World>();

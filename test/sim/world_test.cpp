@@ -116,6 +116,16 @@ TEST(World, TheShippedFileHoldsEveryDefault) {
   EXPECT_EQ(core::loadYamlFile(file).size(), defaults.options().options().size()) << "not every key is there";
 }
 
+TEST(World, FindsTheUrdfsOfAFileRelativeToIt) {
+  const TestFolder folder;
+  const std::string file = folder.write("mine.yaml", "{camera_urdf: robots/neck.urdf, kitchen_urdf: /room.urdf}");
+  EXPECT_EQ(findUrdfs(file).camera, folder.path() + "/robots/neck.urdf");
+  EXPECT_EQ(findUrdfs(file).kitchen, "/room.urdf");
+  EXPECT_EQ(findUrdfs("").camera, core::shareFolder() + "/urdf/pan_tilt_camera.urdf");
+  EXPECT_EQ(errorOf([&] { findUrdfs(folder.write("bad.yaml", "camera: x")); }).rfind(folder.path() + "/bad.yaml:1", 0),
+            0u);
+}
+
 TEST(World, NamesTheKeyOfAMistake) {
   expectError("world.yaml", std::string(kWorldYaml) + "colour: red\n", {"world.yaml", "colour"});
   expectError("world.yaml", std::string(kWorldYaml) + "clearance: wide\n", {"world.yaml", "clearance", "wide"});

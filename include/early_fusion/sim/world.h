@@ -56,4 +56,14 @@ struct World {
 /// @throws Error naming file, key and value.
 std::shared_ptr<const World> loadWorld(const std::string& world_file);
 
+/// Paths of URDF files.
+struct WorldUrdfs {
+  std::string camera;
+  std::string kitchen;
+};
+
+/// What a world file names as its URDFs, without loading them. @param world_file as loadWorld() takes it.
+/// @throws Error as loadWorld() does for the world file itself.
+WorldUrdfs findUrdfs(const std::string& world_file);
+
 }  // namespace early_fusion::sim
