@@ -184,20 +184,6 @@ TEST(SessionOptions, TheDefaultsAreThoseOfThePaper) {
   EXPECT_EQ(paper.options().toYaml(), defaults.options().toYaml());
 }
 
-TEST(SessionOptions, EveryOneIsAnArgumentOfTrainLaunch) {
-  SessionOptions options;
-  const core::OptionSet set = options.options();
-  const std::string launch = core::readFile(fs::path(core::shareFolder()) / "launch" / "train.launch");
-  for (const core::Option& option : set.options()) {
-    if (option.name == "kind") continue;  // there is but one
-    EXPECT_NE(launch.find("<arg name=\"" + option.name + "\""), std::string::npos) << option.name;
-    const std::string name = "name=\"" + option.name + "\" ", value = "value=\"$(arg " + option.name + ")\"";
-    EXPECT_TRUE(launch.find(name + value) != std::string::npos ||
-                launch.find(name + "type=\"str\" " + value) != std::string::npos)
-        << option.name;
-  }
-}
-
 TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {
   const SessionOptions options = resolveSessionOptions({{"learning_rate", "0.25"}, {"preset", "paper"}}, "test");
   EXPECT_DOUBLE_EQ(options.training.learning_rate, 0.25);
