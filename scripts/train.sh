@@ -2,8 +2,8 @@
 # Sets everything up and runs a full training session: simulator, policy and trainer node.
 #
 # Usage: scripts/train.sh [name:=value ...]
-#   Every argument is passed to roslaunch: scripts/train.sh task:=medium
-#   `roslaunch --ros-args early_fusion train.launch` lists them all.
+#   A name is an argument of train.launch (`roslaunch --ros-args early_fusion train.launch` lists them) or an option of
+#   training (`early_fusion train --help`): scripts/train.sh task:=medium channels:=32 learning_rate:=1e-3
 set -euo pipefail
 case "${1:-}" in
   -h | --help)
@@ -27,13 +27,34 @@ scripts/setup.sh
 output="$PWD/runs/$(date +%Y%m%d-%H%M%S)"
 task=simple
 world=""
+# Names that are no arguments of train.launch go to the trainer in `options`: it refuses what it does not know, where
+# roslaunch would ignore it.
+known=$(sed -n 's/.*<arg name="\([a-z_]*\)".*/\1/p' launch/train.launch)
+passed=()
+options=""
 for argument in "${arguments[@]}"; do
+  name="${argument%%:=*}"
+  value="${argument#*:=}"
   case "$argument" in
-    output:=*) output="${argument#*:=}" ;;
-    task:=*) task="${argument#*:=}" ;;
-    world:=*) world="${argument#*:=}" ;;
+    output:=*) output="$value" ;;
+    task:=*) task="$value" ;;
+    world:=*) world="$value" ;;
+  esac
+  case "$argument" in
+    options:=\{\}) ;;
+    options:=\{*\}) options+="${value:1:-1}, " ;;
+    __*:=*) passed+=("$argument") ;;
+    *:=*)
+      if grep -qxF -- "$name" <<<"$known"; then
+        passed+=("$argument")
+      else
+        options+="$name: '${value//\'/\'\'}', "
+      fi
+      ;;
+    *) passed+=("$argument") ;;
   esac
 done
+[ -z "$options" ] || passed+=("options:={$options}")
 port_option=()
 if [ -z "${ROS_MASTER_URI:-}" ] || [ "$ROS_MASTER_URI" = http://localhost:11311 ]; then
   # Start a separate master on a free port.
@@ -48,7 +69,7 @@ and trains the policy on it, round by round; a line tells how each went. F1 is t
 the policy still tries things out; at the end it is scored on episodes that it never saw. Watch from another terminal:
   export ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP; . $PWD/devel/setup.sh; rostopic echo /progress
 TEXT
-roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "${arguments[@]}"
+roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "${passed[@]}"
 
 # roslaunch exits with 0 even if its nodes failed. A result file exists only after a complete session.
 [ -f "$output/result.json" ] || { echo "train.sh: the session ended without a result; see the messages above" >&2; exit 1; }

@@ -14,6 +14,7 @@ void addTrain(CLI::App& app);
 void addEvaluate(CLI::App& app);
 void addRender(CLI::App& app);
 void addInspect(CLI::App& app);
+void addUrdf(CLI::App& app);
 
 /// The options that a user gave, as (name, value), in the order of the command line.
 using GivenOptions = std::vector<std::pair<std::string, std::string>>;

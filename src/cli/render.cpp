@@ -4,7 +4,7 @@
 
 #include "command.h"
 #include "early_fusion/core/error.h"
-#include "early_fusion/core/image.h"
+#include "early_fusion/core/image_size.h"
 #include "early_fusion/learning/evaluation.h"
 #include "named_agent.h"
 #include "pictures.h"
@@ -25,7 +25,26 @@ struct RenderOptions {
   int scale = 1;
   bool annotate = false;
   std::string out;
+
+  core::OptionSet options();
 };
+
+core::OptionSet RenderOptions::options() {
+  core::OptionSet set("picture");
+  set.addChoice("picture", picture, {"step", "episode", "objects"},
+                "one step, a sheet of the episode, or a sheet of all objects");
+  set.add("task", task, "simple, medium, hard, or a task's YAML file");
+  set.add("seed", seed, "with --episode, which episode");
+  set.add("episode", episode, "number of the episode");
+  set.add("step", step, 0, 99999, "", "which step of it");
+  set.add("policy", policy, "who acts until then: expert, searching, random, idle, or a weights file");
+  core::addImageSize(set, "size", size, "edge of a drawn image");
+  set.add("scale", scale, 1, 16, "", "enlarge each image so many times");
+  set.add("annotate", annotate, "add the crosshair circle, the request and the action");
+  set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
+  set.add("out", out, "the PNG file to write");
+  return set;
+}
 
 void writePng(const std::string& file, const core::Image& image) {
   const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
@@ -75,33 +94,15 @@ void addRender(CLI::App& app) {
       "render",
       "Draw what the camera sees as a PNG file.\n"
       "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
-  const auto options = std::make_shared<RenderOptions>();
-  command->add_option("--picture", options->picture, "one step, a sheet of the episode, or a sheet of all objects")
-      ->check(CLI::IsMember({"step", "episode", "objects"}))
-      ->capture_default_str();
-  command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file")->capture_default_str();
-  command->add_option("--seed", options->seed, "with --episode, which episode")->capture_default_str();
-  command->add_option("--episode", options->episode, "number of the episode")->capture_default_str();
-  command->add_option("--step", options->step, "which step of it")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--policy", options->policy,
-                   "who acts until then: expert, searching, random, idle, or a weights file")
-      ->capture_default_str();
-  command->add_option("--size", options->size, "edge of a drawn image [px], a multiple of 16")
-      ->check(CLI::Range(core::kImageSizeStep, core::kMaxImageSize))
-      ->check([](const std::string& size) {
-        return core::isImageSize(std::stoi(size)) ? std::string() : "Value " + size + " not " + core::kImageSizes;
-      })
-      ->capture_default_str();
-  command->add_option("--scale", options->scale, "enlarge each image so many times")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  command->add_flag("--annotate", options->annotate, "add the crosshair circle, the request and the action");
-  command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
-  command->add_option("--out", options->out, "the PNG file to write")->required();
-  command->callback([options] { render(*options); });
+  const auto given = std::make_shared<GivenOptions>();
+  addOptionFlags(*command, RenderOptions().options(), *given);
+  command->get_option("--out")->required();
+  command->callback([given] {
+    RenderOptions options;
+    core::OptionSet set = options.options();
+    for (const auto& [name, value] : *given) set.set(name, value, "command line");
+    render(options);
+  });
 }
 
 }  // namespace early_fusion::cli

@@ -39,13 +39,21 @@ std::string position(const YAML::Node& node, const std::string& file) {
 
 void OptionSet::add(const std::string& name, int& field, int low, int high, const std::string& unit,
                     const std::string& help) {
-  const auto set = [&field, low, high](const std::string& text) {
+  addMultiple(name, field, 1, low, high, unit, help);
+}
+
+void OptionSet::addMultiple(const std::string& name, int& field, int divisor, int low, int high,
+                            const std::string& unit, const std::string& help) {
+  const std::string multiple = divisor == 1 ? "" : "a multiple of " + std::to_string(divisor);
+  const auto set = [&field, divisor, low, high, multiple](const std::string& text) {
     const int value = parseNumber<int>(text, "a whole number");
     if (value < low || value > high) throw Error("is out of range");
+    if (value % divisor != 0) throw Error("is not " + multiple);
     field = value;
   };
   const auto get = [&field] { return std::to_string(field); };
-  insert({name, unit, "[" + std::to_string(low) + ", " + std::to_string(high) + "]", get(), help, set, get});
+  const std::string range = "[" + std::to_string(low) + ", " + std::to_string(high) + "]";
+  insert({name, unit, multiple.empty() ? range : multiple + " in " + range, get(), help, set, get});
 }
 
 void OptionSet::add(const std::string& name, double& field, double low, double high, const std::string& unit,
@@ -119,6 +127,10 @@ void OptionSet::set(const std::string& name, const std::string& text, const std:
     throw Error(source + ": " + name + ": '" + text + "' " + error.what() + "; allowed: " + option->range +
                 (option->unit.empty() ? "" : " " + option->unit));
   }
+}
+
+void OptionSet::validate(const std::string& source) {
+  for (const Option& option : options_) set(option.name, option.get(), source);
 }
 
 void OptionSet::setFromYaml(const YAML::Node& map, const std::string& file) {

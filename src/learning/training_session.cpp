@@ -77,7 +77,8 @@ double parseSeconds(const std::string& text, const std::string& source) {
 core::OptionSet SessionOptions::options() {
   core::OptionSet set("session");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
-  set.add("preset", preset, "fast, paper, or a YAML file: how the policy learns");
+  set.add("preset", preset,
+          "fast, paper, or a YAML file: how the policy learns; its values replace the defaults of other options");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
   set.add("seed", seed, "decides episodes, first weights and every other draw");
   set.add("output", output, "run folder: checkpoint, weights, learning curve, result");

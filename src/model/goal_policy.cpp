@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/core/image.h"
+#include "early_fusion/core/image_size.h"
 #include "early_fusion/model/early_fusion.h"
 
 namespace early_fusion::model {
@@ -15,21 +15,9 @@ namespace {
 constexpr const char* kFormat = "early_fusion/2";
 constexpr int kWidestRegister = 16;  // channels come in multiples of it
 
-void require(bool holds, const std::string& name, const std::string& value, const std::string& allowed) {
-  if (!holds) throw core::Error("policy: " + name + ": " + value + " is not allowed; it must be " + allowed);
-}
-
-void validate(const PolicyOptions& options, const core::Vocabulary& vocabulary) {
-  require(options.kind == "early_fusion", "kind", "'" + options.kind + "'", "early_fusion");
-  require(options.channels >= 16 && options.channels <= 256 && options.channels % kWidestRegister == 0, "channels",
-          std::to_string(options.channels), "a multiple of 16 in [16, 256]");
-  require(options.fusion_block >= 0 && options.fusion_block < kBlocks, "fusion_block",
-          std::to_string(options.fusion_block), "in [0, 3]");
-  require(options.dropout >= 0 && options.dropout <= 0.95, "dropout", std::to_string(options.dropout), "in [0, 0.95]");
-  require(core::isImageSize(options.image_size), "image_size", std::to_string(options.image_size), core::kImageSizes);
-  require(options.precision == "f32" || options.precision == "bf16" || options.precision == "auto", "precision",
-          "'" + options.precision + "'", "f32, bf16 or auto");
-  require(vocabulary.size() > 0, "vocabulary", "an empty one", "a list of at least one item");
+void validate(PolicyOptions options, const core::Vocabulary& vocabulary) {
+  options.options().validate("policy");
+  if (vocabulary.size() == 0) throw core::Error("policy: the vocabulary is empty; it needs at least one item");
 }
 
 bool usesBfloat16(const std::string& precision) {
@@ -118,16 +106,15 @@ void storeTensors(const std::vector<nn::TensorSlice>& slices, const Eigen::Vecto
 
 core::OptionSet PolicyOptions::options() {
   core::OptionSet set("policy");
-  set.addChoice("kind", kind, {"early_fusion"}, "How the goal reaches the network.");
-  set.add("channels", channels, 16, 256, "",
-          "Channels of every block, of the hidden layer and of the goal's embedding; a multiple of 16.");
+  set.addChoice("kind", kind, {"early_fusion"}, "How the goal reaches the network");
+  set.addMultiple("channels", channels, kWidestRegister, 16, 256, "",
+                  "Channels of every block, of the hidden layer and of the goal's embedding");
   set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
-          "The block whose output the goal is joined to; 0 joins it to the image itself.");
-  set.add("dropout", dropout, 0.0, 0.95, "", "Share of the hidden layer's units that are dropped in training.");
-  set.add("image_size", image_size, core::kImageSizeStep, core::kMaxImageSize, "px",
-          "Edge of the square frames that the policy sees; a multiple of 16.");
-  set.addChoice("precision", precision, {"auto", "f32", "bf16"},
-                "What convolutions compute in; auto is bf16 where the processor has it natively.");
+          "The block whose output the goal is joined to; 0 joins it to the image itself");
+  set.add("dropout", dropout, 0.0, 0.95, "", "Share of the hidden layer's units that are dropped in training");
+  core::addImageSize(set, "image_size", image_size, "Edge of the square frames that the policy sees");
+  set.addChoice("precision", precision, precisionNames(),
+                "What convolutions compute in; auto is bf16 where the processor has it natively");
   return set;
 }
 

@@ -27,7 +27,7 @@ core::OptionSet PolicyNode::Options::options() {
   set.addChoice("mode", acting.mode, model::actionChoiceNames(),
                 "with weights from a file: the likeliest action, or drawn");
   set.add("seed", acting.seed, "of the draws in mode 'sample'");
-  set.addChoice("precision", acting.precision, {"auto", "f32", "bf16"},
+  set.addChoice("precision", acting.precision, model::precisionNames(),
                 "of the arithmetic with weights from a file; auto: bf16 where the processor has it natively");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "early_fusion/core/error.h"
+#include "early_fusion/core/image_size.h"
 #include "fragment_shader.h"
 #include "mesh_drawer.h"
 #include "projection.h"
@@ -19,8 +19,10 @@ namespace {
 static_assert(core::kMaxImageSize == kMaxScreenSize / 2 / core::kImageSizeStep * core::kImageSizeStep);
 
 int checkedSize(int image_size) {
-  if (core::isImageSize(image_size)) return image_size;
-  throw core::Error("image_size is " + std::to_string(image_size) + " px; it must be " + core::kImageSizes);
+  core::OptionSet set("rasterizer");
+  core::addImageSize(set, "image_size", image_size, "");
+  set.validate("rasterizer");
+  return image_size;
 }
 
 LinearForm cameraAxis(const RenderPose& world_from_camera, int axis) {

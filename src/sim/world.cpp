@@ -4,7 +4,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
-#include "early_fusion/core/image.h"
+#include "early_fusion/core/image_size.h"
 #include "kitchen.h"
 
 namespace early_fusion::sim {
@@ -24,6 +24,10 @@ void shrink(double& low, double& high, double size, const std::string& key, cons
   high = middle + 0.5 * size;
 }
 
+std::string orShipped(const std::string& world_file) {
+  return world_file.empty() ? core::shareFolder() + "/config/world.yaml" : world_file;
+}
+
 }  // namespace
 
 core::OptionSet WorldOptions::options() {
@@ -39,22 +43,24 @@ core::OptionSet WorldOptions::options() {
   set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
   set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects, and between an object and the kitchen");
   set.add("max_overhang", max_overhang, 0.0, 1.0, "m", "of an object over an edge of the counter's top");
-  set.add("image_size", image_size, core::kImageSizeStep, core::kMaxImageSize, "px",
-          "edge of the square picture, a multiple of 16");
+  core::addImageSize(set, "image_size", image_size, "edge of the square picture");
   set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
   set.add("max_triangles", max_triangles, 16, 1000000, "", "a mesh with more is simplified when it is loaded");
   return set;
 }
 
+WorldUrdfs findUrdfs(const std::string& world_file) {
+  const std::string yaml_file = orShipped(world_file);
+  WorldOptions options;
+  options.options().setFromYamlFile(yaml_file);
+  return {core::resolvePath(yaml_file, options.camera_urdf), core::resolvePath(yaml_file, options.kitchen_urdf)};
+}
+
 std::shared_ptr<const World> loadWorld(const std::string& world_file) {
-  const std::string yaml_file = world_file.empty() ? core::shareFolder() + "/config/world.yaml" : world_file;
+  const std::string yaml_file = orShipped(world_file);
   auto world = std::make_shared<World>();
   WorldOptions& options = world->options;
   options.options().setFromYamlFile(yaml_file);
-  if (!core::isImageSize(options.image_size)) {
-    throw core::Error(yaml_file + ": image_size is " + std::to_string(options.image_size) + "; it must be " +
-                      core::kImageSizes);
-  }
   const auto path = [&](const std::string& name) { return core::resolvePath(yaml_file, name); };
   world->rig = CameraRig::load(path(options.camera_urdf), options.pan_joint, options.tilt_joint, options.optical_frame);
   Kitchen kitchen = loadKitchen(path(options.kitchen_urdf), options.counter_link, options.max_triangles);

@@ -40,7 +40,7 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, HelpOfEveryCommandSaysWhatItTakes) {
   EXPECT_EQ(run("--help"), 0);
-  for (const char* command : {"train", "evaluate", "render", "inspect"}) {
+  for (const char* command : {"train", "evaluate", "render", "inspect", "urdf"}) {
     EXPECT_NE(output_.find(command), std::string::npos);
   }
   EXPECT_EQ(run("train --help"), 0);
@@ -80,6 +80,17 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   EXPECT_GE(cv::imread(path("e.png")).rows, 96);  // every fifth of 48 steps at least, four in a row
 }
 
+TEST_F(CommandLine, PrintsTheUrdfsOfAWorld) {
+  ASSERT_EQ(run("urdf camera --world ''"), 0) << errors_;
+  EXPECT_EQ(output_, core::readFile(core::shareFolder() + "/urdf/pan_tilt_camera.urdf"));
+  ASSERT_EQ(run("urdf kitchen"), 0) << errors_;
+  EXPECT_EQ(output_, core::readFile(core::shareFolder() + "/urdf/kitchen.urdf"));
+  core::writeFileAtomically(path("neck.urdf"), "<robot/>");
+  core::writeFileAtomically(path("world.yaml"), "camera_urdf: neck.urdf");
+  ASSERT_EQ(run("urdf camera --world " + path("world.yaml")), 0) << errors_;
+  EXPECT_EQ(output_, "<robot/>");
+}
+
 TEST_F(CommandLine, TrainsResumesInspectsAndEvaluatesWhatItTrained) {
   core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
   const std::string train = "train --task " + path("tiny.yaml") + " --output " + path("run") +
@@ -106,10 +117,13 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
       {"render --step 48 --out " + path("x.png"), "--step"},
-      {"render --size 20 --out " + path("x.png"), "--size: Value 20 not a multiple of 16"},
-      {"render --size 1008 --out " + path("x.png"), "--size: Value 1008 not in range 16 to 992"},
+      {"render --size 20 --out " + path("x.png"), "size: '20' is not a multiple of 16"},
+      {"render --size 1008 --out " + path("x.png"),
+       "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
       {"evaluate --policy expert --episodes 0", "episodes"},
+      {"urdf camera --world /no/such/world.yaml", "/no/such/world.yaml"},
+      {"urdf robot", "camera"},
   };
   for (const auto& [arguments, named] : mistakes) {
     EXPECT_NE(run(arguments), 0) << arguments;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <yaml-cpp/yaml.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -166,25 +167,21 @@ TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
   }
 }
 
-TEST(SessionOptions, EveryShippedPresetLoads) {
+TEST(SessionOptions, EveryShippedPresetSaysEveryOptionOfTraining) {
+  TrainingOptions training;
+  const core::OptionSet set = training.options();
   for (const auto& entry : fs::directory_iterator(fs::path(core::shareFolder()) / "config" / "presets")) {
     EXPECT_NO_THROW(resolveSessionOptions({{"preset", entry.path().stem().string()}}, "test")) << entry.path();
+    const YAML::Node preset = core::loadYamlFile(entry.path());
+    for (const core::Option& option : set.options()) EXPECT_TRUE(preset[option.name]) << entry.path() << option.name;
   }
   EXPECT_THROW(resolveSessionOptions({{"preset", "slow"}}, "test"), core::Error);
 }
 
-TEST(SessionOptions, EveryOneIsAnArgumentOfTrainLaunch) {
-  SessionOptions options;
-  const core::OptionSet set = options.options();
-  const std::string launch = core::readFile(fs::path(core::shareFolder()) / "launch" / "train.launch");
-  for (const core::Option& option : set.options()) {
-    if (option.name == "kind") continue;  // there is but one
-    EXPECT_NE(launch.find("<arg name=\"" + option.name + "\""), std::string::npos) << option.name;
-    const std::string name = "name=\"" + option.name + "\" ", value = "value=\"$(arg " + option.name + ")\"";
-    EXPECT_TRUE(launch.find(name + value) != std::string::npos ||
-                launch.find(name + "type=\"str\" " + value) != std::string::npos)
-        << option.name;
-  }
+TEST(SessionOptions, TheDefaultsAreThoseOfThePaper) {
+  SessionOptions paper = resolveSessionOptions({{"preset", "paper"}}, "test"), defaults;
+  defaults.preset = paper.preset;
+  EXPECT_EQ(paper.options().toYaml(), defaults.options().toYaml());
 }
 
 TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {

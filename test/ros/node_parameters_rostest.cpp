@@ -50,6 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
                     Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
                     Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
+                    Case{"trainer_node", {"_output:=/tmp/x", "_chanels:=32"}, {"'chanels'", "known are", "channels"}},
                     Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
                     Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
                     Case{"request_node", {"_rate:=often"}, {"rate", "often"}},

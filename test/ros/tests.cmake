@@ -8,6 +8,10 @@ foreach(name acting_policy camera_image conversions markers rollout_recorder)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()
 
+early_fusion_add_test(ros launch_files_test ${PROJECT_NAME}_child_process yaml-cpp)
+target_include_directories(ros_launch_files_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+add_dependencies(ros_launch_files_test ${PROJECT_NAME}_cli)
+
 # Whole sessions bring up masters of their own.
 early_fusion_add_test(ros session_test ${PROJECT_NAME}_child_process nlohmann_json::nlohmann_json)
 

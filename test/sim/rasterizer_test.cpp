@@ -344,7 +344,7 @@ TEST(Rasterizer, ImageSizesOutOfRangeAreNamed) {
       Rasterizer rasterizer(world, size);
       ADD_FAILURE() << size << " was accepted";
     } catch (const core::Error& error) {
-      EXPECT_NE(std::string(error.what()).find("image_size is " + std::to_string(size)), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("image_size: '" + std::to_string(size) + "'"), std::string::npos);
     }
   }
   EXPECT_EQ(picture(world, kAhead, 16).rgb.size(), 3u * 16 * 16);

@@ -34,6 +34,12 @@ INSTANTIATE_TEST_SUITE_P(AllThree, ShippedTask,
                          testing::Values(Expected{"simple", 4, 1}, Expected{"medium", 8, 2}, Expected{"hard", 12, 3}),
                          [](const auto& info) { return info.param.name; });
 
+TEST(Task, TheDefaultsAreThoseOfSimple) {
+  Task simple = loadTask("simple"), defaults;
+  defaults.name = simple.name;
+  EXPECT_EQ(simple.options().toYaml(), defaults.options().toYaml());
+}
+
 TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
   const TestFolder folder;
   EXPECT_EQ(loadTask(folder.write("crowded.yaml", "instances: 20\n")).name, "crowded");

@@ -114,6 +114,7 @@ inline const char* const kWorldYaml = R"(kitchen_urdf: kitchen.urdf
 camera_urdf: rig.urdf
 optical_frame: eye
 placement_width: 1.2
+placement_depth: 0.5
 )";
 
 /// Writes the files of a small world, ready to be overwritten, and returns the path of its world.yaml.

@@ -1,6 +1,7 @@
 #include "early_fusion/sim/world.h"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include "test_world.h"
 
@@ -107,11 +108,29 @@ TEST(World, OfThePackageHoldsSixteenObjectsOnTheCounter) {
   EXPECT_GT(world->kitchen.size(), 4u);
 }
 
+TEST(World, TheShippedFileHoldsEveryDefault) {
+  const std::string file = core::shareFolder() + "/config/world.yaml";
+  WorldOptions shipped, defaults;
+  shipped.options().setFromYamlFile(file);
+  EXPECT_EQ(shipped.options().toYaml(), defaults.options().toYaml());
+  EXPECT_EQ(core::loadYamlFile(file).size(), defaults.options().options().size()) << "not every key is there";
+}
+
+TEST(World, FindsTheUrdfsOfAFileRelativeToIt) {
+  const TestFolder folder;
+  const std::string file = folder.write("mine.yaml", "{camera_urdf: robots/neck.urdf, kitchen_urdf: /room.urdf}");
+  EXPECT_EQ(findUrdfs(file).camera, folder.path() + "/robots/neck.urdf");
+  EXPECT_EQ(findUrdfs(file).kitchen, "/room.urdf");
+  EXPECT_EQ(findUrdfs("").camera, core::shareFolder() + "/urdf/pan_tilt_camera.urdf");
+  EXPECT_EQ(errorOf([&] { findUrdfs(folder.write("bad.yaml", "camera: x")); }).rfind(folder.path() + "/bad.yaml:1", 0),
+            0u);
+}
+
 TEST(World, NamesTheKeyOfAMistake) {
   expectError("world.yaml", std::string(kWorldYaml) + "colour: red\n", {"world.yaml", "colour"});
   expectError("world.yaml", std::string(kWorldYaml) + "clearance: wide\n", {"world.yaml", "clearance", "wide"});
   expectError("world.yaml", std::string(kWorldYaml) + "image_size: 100\n",
-              {"world.yaml", "image_size is 100", "multiple of 16"});
+              {"world.yaml", "image_size: '100'", "a multiple of 16"});
   expectError("world.yaml", std::string(kWorldYaml) + "horizontal_fov_deg: 180\n", {"horizontal_fov_deg", "180"});
   expectError("world.yaml", std::string(kWorldYaml) + "pan_joint: neck\n", {"rig.urdf", "no joint 'neck'"});
   EXPECT_NE(errorOf([] { loadWorld("/no/such/world.yaml"); }).find("/no/such/world.yaml"), std::string::npos);
@@ -120,7 +139,7 @@ TEST(World, NamesTheKeyOfAMistake) {
 TEST(World, RefusesACounterThatIsTooSmall) {
   expectError("world.yaml", replaced(kWorldYaml, "placement_width: 1.2", "placement_width: 3.3"),
               {"world.yaml", "placement_width is 3.3 m", "only 3.2 m"});
-  expectError("world.yaml", std::string(kWorldYaml) + "placement_depth: 0.8\n",
+  expectError("world.yaml", replaced(kWorldYaml, "placement_depth: 0.5", "placement_depth: 0.8"),
               {"world.yaml", "placement_depth is 0.8 m", "only 0.75 m"});
 }
 

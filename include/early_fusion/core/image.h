@@ -6,16 +6,6 @@
 
 namespace early_fusion::core {
 
-/// The edge of a square frame [px] is a multiple of kImageSizeStep, at most kMaxImageSize.
-inline constexpr int kImageSizeStep = 16;
-inline constexpr int kMaxImageSize = 992;
-static_assert(kImageSizeStep == 16 && kMaxImageSize == 992, "kImageSizes must say the same");
-inline constexpr char kImageSizes[] = "a multiple of 16 in [16, 992]";
-
-inline bool isImageSize(int size) {
-  return size >= kImageSizeStep && size <= kMaxImageSize && size % kImageSizeStep == 0;
-}
-
 /// An 8-bit RGB image, (height, width, 3), row-major, without padding.
 struct Image {
   int width = 0;

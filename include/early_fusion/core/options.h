@@ -12,11 +12,12 @@ class Node;
 
 namespace early_fusion::core {
 
-/// One setting. It is declared once; YAML files, the command line and ROS parameters all use this declaration.
+/// One setting. It is declared once; YAML files, the command line, ROS parameters and structs that a program fills all
+/// use this declaration.
 struct Option {
   std::string name;
   std::string unit;     ///< empty if it has none
-  std::string range;    ///< as shown to the user: "[1, 4096]", "paper | fast", "true | false"
+  std::string range;    ///< as shown to the user: "[1, 4096]", "a multiple of 16 in [16, 256]", "paper | fast"
   std::string initial;  ///< the default, as text
   std::string help;
   std::function<void(const std::string& text)> set;  ///< @throws Error with the reason, without the option's name
@@ -33,6 +34,9 @@ class OptionSet {
   explicit OptionSet(std::string title) : title_(std::move(title)) {}
 
   void add(const std::string& name, int& field, int low, int high, const std::string& unit, const std::string& help);
+  /// A whole number in [low, high] that `divisor` divides.
+  void addMultiple(const std::string& name, int& field, int divisor, int low, int high, const std::string& unit,
+                   const std::string& help);
   void add(const std::string& name, double& field, double low, double high, const std::string& unit,
            const std::string& help);
   void add(const std::string& name, std::uint64_t& field, const std::string& help);
@@ -52,6 +56,9 @@ class OptionSet {
   /// "/trainer/channels").
   /// @throws Error naming source, key, value and the allowed range; for an unknown name, listing the known ones.
   void set(const std::string& name, const std::string& text, const std::string& source);
+
+  /// Checks the fields as they are, for a struct that a program has filled. @throws Error as set() does.
+  void validate(const std::string& source);
 
   /// Sets an option for every key of a YAML map. @throws Error naming `file` and the line for an unknown key or a bad
   /// value.

@@ -14,9 +14,9 @@
 
 namespace early_fusion::learning {
 
-/// config/presets/*.yaml: how a policy learns (Walsman et al. 2019, sec. IV-C).
+/// How a policy learns. The defaults are those of config/presets/paper.yaml (Walsman et al. 2019, sec. IV-C).
 struct TrainingOptions {
-  int trajectories = 3000;             ///< in the whole session
+  int trajectories = 20000;            ///< in the whole session
   int most_instances = 0;              ///< on the counter in episodes that are learnt from: sim::withUpTo()
   int trajectories_per_round = 50;     ///< new ones before the policy is trained on the window
   int window = 150;                    ///< most recent trajectories that are trained on

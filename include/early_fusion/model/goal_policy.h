@@ -35,13 +35,16 @@ struct Sample {
   float weight = 1.f;
 };
 
-/// config/models/*.yaml: the shape of the network.
+/// The choices of PolicyOptions::precision.
+inline std::vector<std::string> precisionNames() { return {"auto", "f32", "bf16"}; }
+
+/// The shape of the network, and what it computes in.
 struct PolicyOptions {
   std::string kind = "early_fusion";
-  int channels = 16;     ///< of every block, of the hidden layer and of the embedding; a multiple of 16 in [16, 256]
-  int fusion_block = 1;  ///< the goal joins the output of this block, [0, 3]; 0: the image itself
-  double dropout = 0.5;  ///< after the hidden layer, [0, 0.95]
-  int image_size = 128;  ///< [px], a multiple of 16
+  int channels = 16;               ///< of every block, of the hidden layer and of the embedding
+  int fusion_block = 1;            ///< the goal joins the output of this block; 0: the image itself
+  double dropout = 0.5;            ///< after the hidden layer
+  int image_size = 128;            ///< [px]
   std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes in it natively
 
   core::OptionSet options();

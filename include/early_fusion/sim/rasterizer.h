@@ -16,7 +16,7 @@ namespace early_fusion::sim {
 /// An instance belongs to one thread at a time; give every thread its own. Several may share a World.
 class Rasterizer {
  public:
-  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], see core::isImageSize().
+  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], see core::addImageSize().
   /// @throws Error otherwise.
   Rasterizer(const World& world, int image_size);
   ~Rasterizer();

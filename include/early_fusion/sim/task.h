@@ -7,7 +7,7 @@
 
 namespace early_fusion::sim {
 
-/// config/tasks/*.yaml: how hard an episode is (Walsman et al. 2019, sec. IV-A).
+/// A task file: how hard an episode is (Walsman et al. 2019, sec. IV-A). The defaults are those of SIMPLE.
 struct Task {
   std::string name = "custom";
   int instances = 4;       ///< objects on the counter, types drawn with repetition, at most kMaxInstances

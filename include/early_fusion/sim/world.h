@@ -12,7 +12,7 @@
 
 namespace early_fusion::sim {
 
-/// config/world.yaml: which files make the world, and how the camera sees it.
+/// A world file: which files make the world, and how the camera sees it. The defaults are those of config/world.yaml.
 struct WorldOptions {
   std::string objects = "objects.yaml";
   std::string kitchen_urdf = "../urdf/kitchen.urdf";
@@ -21,8 +21,8 @@ struct WorldOptions {
   std::string tilt_joint = "tilt_joint";
   std::string optical_frame = "camera_optical_frame";
   std::string counter_link = "counter";  ///< its collision box carries the objects
-  double placement_width = 1.6;          ///< [m] along y, centred on the counter: where objects' centres may lie
-  double placement_depth = 0.5;          ///< [m] along x, likewise
+  double placement_width = 1.1;          ///< [m] along y, centred on the counter: where objects' centres may lie
+  double placement_depth = 0.58;         ///< [m] along x, likewise
   double clearance = 0.005;              ///< [m] between two objects, and between an object and the kitchen
   double max_overhang = 0.03;            ///< [m] of an object over an edge of the counter's top
   int image_size = 128;                  ///< [px]
@@ -60,5 +60,15 @@ struct World {
 /// config/world.yaml.
 /// @throws Error naming file, key and value.
 std::shared_ptr<const World> loadWorld(const std::string& world_file);
+
+/// Paths of URDF files.
+struct WorldUrdfs {
+  std::string camera;
+  std::string kitchen;
+};
+
+/// What a world file names as its URDFs, without loading them. @param world_file as loadWorld() takes it.
+/// @throws Error as loadWorld() does for the world file itself.
+WorldUrdfs findUrdfs(const std::string& world_file);
 
 }  // namespace early_fusion::sim

@@ -1,0 +1,38 @@
+#include <iostream>
+#include <memory>
+
+#include "command.h"
+#include "early_fusion/core/file.h"
+#include "early_fusion/sim/world.h"
+
+namespace early_fusion::cli {
+
+namespace {
+
+struct UrdfOptions {
+  std::string part;
+  std::string world;
+};
+
+void print(const UrdfOptions& options) {
+  const sim::WorldUrdfs urdfs = sim::findUrdfs(options.world);
+  std::cout << core::readFile(options.part == "camera" ? urdfs.camera : urdfs.kitchen);
+}
+
+}  // namespace
+
+void addUrdf(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("urdf",
+                         "Print a URDF that a world file names: launch files make robot_description of it.\n"
+                         "Example: early_fusion urdf camera --world my_world.yaml");
+  const auto options = std::make_shared<UrdfOptions>();
+  command->add_option("part", options->part, "the pan-tilt camera, or what stands around it")
+      ->required()
+      ->check(CLI::IsMember({"camera", "kitchen"}));
+  command->add_option("--world", options->world,
+                      "a world's YAML file; default, also when empty: config/world.yaml of the package");
+  command->callback([options] { print(*options); });
+}
+
+}  // namespace early_fusion::cli
