@@ -48,10 +48,13 @@ TEST(Task, ListsTheKnownOnesForAnUnknownName) {
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {
   EXPECT_TRUE(mentions(errorOf([] { loadTask("/no/such.yaml"); }), "/no/such.yaml"));
-  const std::string many = errorOfTask("instances: 33\n");
-  EXPECT_TRUE(mentions(many, "mine.yaml") && mentions(many, "instances") && mentions(many, "33")) << many;
-  EXPECT_TRUE(mentions(errorOfTask("steps: 0\n"), "steps"));
-  EXPECT_TRUE(mentions(errorOfTask("object: 4\n"), "object"));
+  const std::pair<const char*, const char*> mistakes[] = {
+      {"instances", "33"}, {"requested", "-1"}, {"steps", "0"}, {"object", "4"}};
+  for (const auto& [key, value] : mistakes) {
+    const std::string error = errorOfTask(std::string(key) + ": " + value + "\n");
+    EXPECT_TRUE(mentions(error, "mine.yaml:1") && mentions(error, key)) << error;
+    EXPECT_TRUE(mentions(error, value) || std::string(key) == "object") << error;
+  }
   EXPECT_TRUE(mentions(errorOfTask("instances: [4\n"), "mine.yaml"));
 }
 
