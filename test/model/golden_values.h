@@ -89,12 +89,13 @@ inline double goldenTolerance(const std::string& name, std::size_t index) {
   if (name == "probabilities") return 1e-5;
   if (name == "loss") return 2e-6;
   if (name == "losses") return 2e-6 + 4e-5 * static_cast<double>(index);
-  if (name.rfind("gradient ", 0) == 0) return 1e-4;
+  if (name.rfind("gradient ", 0) == 0) return 2e-4;
   if (name.rfind("statistic ", 0) == 0) return 1e-5;
   if (name.rfind("moved ", 0) == 0) return 0.05;  // after ten steps
   return 1e-7;                                    // inputs, which are the same bits but for the file's eight digits
 }
 
+/// Fails for every number of `values` that is not the stored one, and where one of them has a figure more.
 inline void expectGolden(const GoldenValues& values, const GoldenValues& golden) {
   EXPECT_EQ(values.size(), golden.size());
   for (const auto& [name, expected] : golden) {
