@@ -61,6 +61,7 @@ install_missing "${packages[@]}"
 if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/CMakeCache.txt; then
   cmake -S . -B build -DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests >build.log 2>&1 ||
     { cat build.log; exit 1; }
+  sed -n '/^CMake Warning/,/^$/p' build.log
   rm -f build.log
 fi
 targets=(all)

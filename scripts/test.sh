@@ -1,7 +1,11 @@
 #!/usr/bin/env bash
-# Sets everything up and runs all tests. Arguments are passed to ctest: scripts/test.sh -R nn
+# Sets everything up and runs all tests, then lists those that were skipped, with reasons. Arguments go to ctest:
+# scripts/test.sh -R nn
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh --tests
 . scripts/ros_environment.sh
-ctest --test-dir build --output-on-failure "$@"
+status=0
+ctest --test-dir build --output-on-failure "$@" || status=$?
+/usr/bin/python3 test/skipped_tests.py build/test_results/early_fusion || true
+exit "$status"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "early_fusion/core/error.h"
 
 namespace early_fusion::core {
@@ -13,10 +15,9 @@ TEST(Action, EveryNameReadsBackAsItsAction) {
 
 // Weights order their outputs by these numbers: a reordered enum would misread every shipped policy.
 TEST(Action, NumbersAreThoseOfTheWeightsFiles) {
-  EXPECT_STREQ(actionName(Action(0)), "PAN_LEFT");
-  EXPECT_STREQ(actionName(Action(3)), "TILT_DOWN");
-  EXPECT_STREQ(actionName(Action(4)), "COLLECT");
-  EXPECT_STREQ(actionName(Action(6)), "IDLE");
+  const char* const names[] = {"PAN_LEFT", "PAN_RIGHT", "TILT_UP", "TILT_DOWN", "COLLECT", "REMOVE", "IDLE"};
+  ASSERT_EQ(std::size(names), std::size_t(kActionCount));
+  for (int i = 0; i < kActionCount; ++i) EXPECT_STREQ(actionName(Action(i)), names[i]);
 }
 
 TEST(Action, UnknownNameIsAnErrorThatListsTheKnown) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "early_fusion/core/error.h"
 
@@ -36,13 +37,19 @@ TEST_F(FileTest, AFailedWriteLeavesNoTemporaryFile) {
 }
 
 TEST_F(FileTest, ErrorsNameThePath) {
-  for (const fs::path path : {folder_ / "missing", folder_}) {
+  const auto expectNamed = [](const fs::path& path, const std::function<void()>& work) {
     try {
-      readFile(path);
-      FAIL() << "read " << path;
+      work();
+      ADD_FAILURE() << "no error about " << path;
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
     }
+  };
+  for (const fs::path& path : {folder_ / "missing", folder_}) expectNamed(path, [&] { readFile(path); });
+  fs::create_directories(folder_ / "taken");
+  writeFileAtomically(folder_ / "file", "");
+  for (const fs::path& path : {folder_ / "taken", folder_ / "file" / "below"}) {
+    expectNamed(path, [&] { writeFileAtomically(path, "x"); });
   }
 }
 

@@ -2,8 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "early_fusion/nn/adam.h"
-#include "policy_batches.h"
+#include "parity_case.h"
 #include "torch_early_fusion.h"
+#include "torch_parameters.h"
 
 namespace early_fusion::model {
 namespace {
@@ -23,41 +24,9 @@ class LibtorchParity : public testing::TestWithParam<Case> {
     options.precision = "f32";
     policy = makePolicy(options, testVocabulary(kItems), 3);
     reference = std::make_shared<TorchEarlyFusion>(options, kItems);
-    makeUnusual();
-    copyWeights();
-  }
-
-  /// Norms that do something, or a lost scale or shift would not show.
-  void makeUnusual() {
-    nn::Parameters& parameters = policy->parameters();
-    core::Random random(9);
-    for (const nn::TensorSlice& slice : parameters.parameterSlices()) {
-      if (slice.name.find("norm") == std::string::npos) continue;
-      for (std::size_t i = 0; i < slice.size; ++i) {
-        parameters.values()[slice.offset + i] += static_cast<float>(random.uniform(-0.4, 0.4));
-      }
-    }
-    for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
-      for (std::size_t i = 0; i < slice.size; ++i) {
-        parameters.buffers()[slice.offset + i] = static_cast<float>(random.uniform(0.05, 0.5));
-      }
-    }
+    drawNorms(policy->parameters());
     policy->parametersChanged();
-  }
-
-  void copyWeights() {
-    torch::NoGradGuard guard;
-    nn::Parameters& parameters = policy->parameters();
-    const auto named = reference->named_parameters();
-    ASSERT_EQ(named.size(), parameters.parameterSlices().size());
-    for (const nn::TensorSlice& slice : parameters.parameterSlices()) {
-      ASSERT_EQ(named[slice.name].sizes().vec(), slice.shape) << slice.name;
-      named[slice.name].copy_(torch::from_blob(parameters.values().data() + slice.offset, slice.shape));
-    }
-    const auto buffers = reference->named_buffers();
-    for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
-      buffers[slice.name].copy_(torch::from_blob(parameters.buffers().data() + slice.offset, slice.shape));
-    }
+    copyParameters(policy->parameters(), *reference);
   }
 
   /// Within `tolerance` of the tensor's largest number.

@@ -19,18 +19,35 @@ TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
     for (int f = 0; f < kStackedFrames; ++f) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
-    const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
-    std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
-    stackFrames(with_black, 0, pixels, x.data());
-    for (int p = 0; p < pixels; ++p) {
-      for (int c = 0; c < kImageChannels; ++c) {
-        const int newest = frames[0][3 * p + c % 3], oldest = frames[2][3 * p + c % 3];
-        const int expected[] = {newest - kMiddleByte, newest, -oldest};
-        ASSERT_EQ(toFloat(x[p * kImageChannels + c]), static_cast<float>(expected[c / 3]))
-            << "pixel " << p << " of " << pixels << ", channel " << c;
+    for (const bool black : {false, true}) {
+      const std::uint8_t* stack[kStackedFrames] = {frames[0].data(), black ? nullptr : frames[1].data(),
+                                                   frames[2].data()};
+      std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
+      stackFrames(stack, 0, pixels, x.data());
+      for (int p = 0; p < pixels; ++p) {
+        for (int c = 0; c < kImageChannels; ++c) {
+          const int i = 3 * p + c % 3, newest = frames[0][i], middle = black ? 0 : frames[1][i], oldest = frames[2][i];
+          const int expected[] = {newest - kMiddleByte, newest - middle, middle - oldest};
+          ASSERT_EQ(toFloat(x[p * kImageChannels + c]), static_cast<float>(expected[c / 3]))
+              << "pixel " << p << " of " << pixels << ", channel " << c;
+        }
       }
+      EXPECT_EQ(toFloat(x.back()), -200.f) << "written past the end";
     }
-    EXPECT_EQ(toFloat(x.back()), -200.f) << "written past the end";
+  }
+}
+
+TYPED_TEST(FrameStack, InPartsIsTheSameAndLeavesTheOtherPixelsAlone) {
+  constexpr int kPixels = 300, kFirst = 64, kLast = 192;
+  const std::vector<std::uint8_t> frame(3 * kPixels, 9);
+  const std::uint8_t* stack[kStackedFrames] = {frame.data(), nullptr, frame.data()};
+  std::vector<TypeParam> whole(kPixels * kImageChannels), part(whole.size(), fromFloat<TypeParam>(-200.f));
+  stackFrames(stack, 0, kPixels, whole.data());
+  stackFrames(stack, kFirst, kLast, part.data());
+  for (int i = 0; i < kPixels * kImageChannels; ++i) {
+    const int pixel = i / kImageChannels;
+    const bool inside = pixel >= kFirst && pixel < kLast;
+    ASSERT_EQ(toFloat(part[i]), inside ? toFloat(whole[i]) : -200.f) << "pixel " << pixel;
   }
 }
 

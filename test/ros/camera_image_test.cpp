@@ -55,9 +55,17 @@ TEST(PolicyImage, TheCentredSquareIsAveragedDown) {
 }
 
 TEST(PolicyImage, ASmallImageIsEnlarged) {
-  const core::Image result = policyImage(makeImage(10, 10, "rgb8", 3), 10, 32);
-  EXPECT_EQ(result.width, 32);
-  EXPECT_EQ(result.rgb.size(), 32u * 32 * 3);
+  const auto image = makeImage(10, 10, "rgb8", 3);
+  const core::Image result = policyImage(image, 10, 30);
+  EXPECT_EQ(result.width, 30);
+  ASSERT_EQ(result.rgb.size(), 30u * 30 * 3);
+  // A pixel becomes 3 x 3 of which the middle one has its colour, or one beside it by rounding.
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 10; ++x) {
+      const std::size_t from = 3 * (10 * y + x), to = 3 * (30 * (3 * y + 1) + 3 * x + 1);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.rgb[to + c], image->data[from + c], 1) << x << ", " << y;
+    }
+  }
 }
 
 TEST(PolicyImage, WhatCannotBeConvertedIsRefusedWithItsEncodingAndSize) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -70,6 +71,15 @@ void ChildProcess::signal(int number) const {
 }
 
 std::string ChildProcess::output() const { return contents(log_file_); }
+
+bool isOnPath(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (::access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
 
 std::vector<int> processesWith(const std::vector<std::string>& texts) {
   std::vector<int> found;

@@ -33,6 +33,9 @@ class ChildProcess {
   std::string log_file_;
 };
 
+/// Whether a program of this name is found on PATH.
+bool isOnPath(const std::string& program);
+
 /// The processes whose command line holds all of these texts.
 std::vector<int> processesWith(const std::vector<std::string>& texts);
 

@@ -7,7 +7,14 @@
 #include <algorithm>
 
 #include "child_process.h"
+#include "early_fusion/ros/evaluator_node.h"
+#include "early_fusion/ros/pan_tilt_driver_node.h"
+#include "early_fusion/ros/policy_node.h"
+#include "early_fusion/ros/request_node.h"
+#include "early_fusion/ros/session_monitor_node.h"
+#include "early_fusion/ros/simulator_node.h"
 #include "early_fusion/ros/topics.h"
+#include "early_fusion/ros/trainer_node.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {
@@ -88,14 +95,35 @@ TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
   while (!is_up()) ASSERT_FALSE(node.ends(0.05)) << node.output();
 }
 
-TEST(NodeHelp, ListsEveryParameterWithRangeAndDefault) {
+/// Checks the --help of the program `name` against the options that its node has.
+template <class Node>
+void expectHelp(const std::string& name) {
   const SmallSession files;
-  for (const char* name : {"simulator", "policy", "trainer", "evaluator", "request", "pan_tilt_driver"}) {
-    ChildProcess node({std::string(EARLY_FUSION_NODES) + "/" + name + "_node", "--help"}, {}, files.path("log"));
-    ASSERT_TRUE(node.ends(20));
-    EXPECT_EQ(node.exitCode(), 0);
-    EXPECT_NE(node.output().find("_diagnostic_period:=1  in [0.1, 3600] s"), std::string::npos) << node.output();
+  ChildProcess program({std::string(EARLY_FUSION_NODES) + "/" + name, "--help"}, {}, files.path("log"));
+  ASSERT_TRUE(program.ends(20)) << name;
+  EXPECT_EQ(program.exitCode(), 0) << name;
+  const std::string help = program.output();
+  typename Node::Options defaults;
+  const core::OptionSet set = defaults.options();
+  EXPECT_FALSE(set.options().empty()) << name;
+  for (const core::Option& option : set.options()) {
+    const std::size_t begin = help.find("  _" + option.name + ":=");
+    ASSERT_NE(begin, std::string::npos) << option.name << " is not in\n" << help;
+    const std::string line = help.substr(begin, help.find('\n', begin) - begin);
+    EXPECT_NE(line.find(":=" + (option.initial.empty() ? "\"\"" : option.initial) + " "), std::string::npos) << line;
+    EXPECT_NE(line.find(" " + option.range), std::string::npos) << line;
+    EXPECT_EQ(line.substr(line.size() - option.unit.size()), option.unit) << line;
   }
+}
+
+TEST(NodeHelp, ListsEveryParameterOfEveryNodeWithRangeUnitAndDefault) {
+  expectHelp<SimulatorNode>("simulator_node");
+  expectHelp<PolicyNode>("policy_node");
+  expectHelp<TrainerNode>("trainer_node");
+  expectHelp<EvaluatorNode>("evaluator_node");
+  expectHelp<RequestNode>("request_node");
+  expectHelp<PanTiltDriverNode>("pan_tilt_driver_node");
+  expectHelp<SessionMonitorNode>("session_monitor_node");
 }
 
 }  // namespace

@@ -8,10 +8,13 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/Image.h>
 
+#include <array>
+#include <boost/make_shared.hpp>
 #include <filesystem>
 
 #include "early_fusion/core/random.h"
 #include "early_fusion/ros/acting_policy.h"
+#include "early_fusion/ros/camera_image.h"
 #include "early_fusion/ros/topics.h"
 #include "small_session.h"
 #include "spin_until.h"
@@ -140,8 +143,24 @@ TEST_F(PolicyNodeTest, AnswersAStepThatIsPublishedAgainAsBefore) {
 
 TEST_F(PolicyNodeTest, TakesACamerasImageOfAnySizeAndOrderOfColours) {
   ASSERT_TRUE(publishWeights("camera"));
-  ask(makeImage(640, 480, 300, "bgr8"), 0, 0);
-  EXPECT_TRUE(answer());
+  ActingPolicy expected;
+  expected.load(file_, "test", {"argmax", 11, "f32"});
+  std::uint64_t episode = 20;
+  for (const auto& [width, height, crop] : {std::array{640, 480, 480}, {100, 300, 100}, {20, 24, 20}}) {
+    const sensor_msgs::Image rgb = makeImage(width, height, 300 + ++episode);
+    sensor_msgs::Image bgr = rgb;
+    bgr.encoding = "bgr8";
+    for (std::size_t i = 0; i < bgr.data.size(); i += 3) std::swap(bgr.data[i], bgr.data[i + 2]);
+    const core::Image seen = policyImage(boost::make_shared<sensor_msgs::Image>(rgb), crop, kSize);
+    for (sensor_msgs::Image image : {rgb, bgr}) {
+      image.header.stamp.nsec = 2000 + ++episode;
+      ask(image, episode, 0);
+      const ActionConstPtr action = answer();
+      ASSERT_TRUE(action) << image.encoding;
+      EXPECT_EQ(action->probabilities, expected.decide(seen, {"mug"}, episode, 0).probabilities)
+          << width << " x " << height << ", " << image.encoding;
+    }
+  }
 }
 
 TEST_F(PolicyNodeTest, UnusableImagesAndUnknownItemsAreDroppedAndTheNextIsAnswered) {

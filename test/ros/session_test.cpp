@@ -63,7 +63,10 @@ class SessionTest : public testing::Test {
             {"evaluation_episodes", std::to_string(SmallSession::kEvaluationEpisodes)}};
   }
 
-  SessionTest() {
+  void SetUp() override {
+    for (const char* program : {"roscore", "roslaunch", "rosbag", "rostopic"}) {
+      if (!isOnPath(program)) GTEST_SKIP() << "there is no " << program << " on the PATH";
+    }
     const std::string port = std::to_string(freePort());
     environment_ = {{"ROS_MASTER_URI", "http://127.0.0.1:" + port},
                     {"ROS_IP", "127.0.0.1"},
@@ -73,7 +76,8 @@ class SessionTest : public testing::Test {
                     {"EARLY_FUSION_SHARE", core::shareFolder()}};
     const std::string log = files_->path("roscore" + port + ".log");
     master_.emplace(std::vector<std::string>{"roscore", "-p", port}, environment_, log);
-    waitFor([&] { return master_->output().find("started core service [/rosout]") != std::string::npos; });
+    ASSERT_TRUE(waitFor([&] { return master_->output().find("started core service [/rosout]") != std::string::npos; }))
+        << master_->output();
   }
 
   std::unique_ptr<ChildProcess> launch(const std::string& file, const std::vector<std::string>& arguments) {

@@ -253,6 +253,7 @@ TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   client.sendGoal(goal);
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  EXPECT_NE(client.getState().getText().find("episodes is 0"), std::string::npos);
   goal.episodes = 1;
   goal.most_instances = 4000000000u;
   client.sendGoal(goal);

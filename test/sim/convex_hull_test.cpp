@@ -54,7 +54,8 @@ TEST(ConvexHull, IsTheEightCornersOfABoxFullOfPoints) {
   }
 }
 
-TEST(ConvexHull, FallsShortByLessThanTheToleranceInEveryDirection) {
+// Between the 4,000 directions that it looks along, the hull may fall a little shorter.
+TEST(ConvexHull, FallsShortByLittleMoreThanTheToleranceInAnyDirection) {
   core::Random random(2);
   Points ball;
   for (int i = 0; i < 3000; ++i) {

@@ -54,10 +54,13 @@ TEST(Task, ListsTheKnownOnesForAnUnknownName) {
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {
   EXPECT_TRUE(mentions(errorOf([] { loadTask("/no/such.yaml"); }), "/no/such.yaml"));
-  const std::string many = errorOfTask("instances: 33\n");
-  EXPECT_TRUE(mentions(many, "mine.yaml") && mentions(many, "instances") && mentions(many, "33")) << many;
-  EXPECT_TRUE(mentions(errorOfTask("steps: 0\n"), "steps"));
-  EXPECT_TRUE(mentions(errorOfTask("object: 4\n"), "object"));
+  const std::pair<std::string, std::string> mistakes[] = {{"instances", "33"}, {"requested", "-1"}, {"steps", "0"}};
+  for (const auto& [key, value] : mistakes) {
+    const std::string error = errorOfTask(key + ": " + value + "\n");
+    EXPECT_TRUE(mentions(error, "mine.yaml:1") && mentions(error, key) && mentions(error, "'" + value + "'")) << error;
+  }
+  const std::string unknown = errorOfTask("object: 4\n");
+  EXPECT_TRUE(mentions(unknown, "mine.yaml:1") && mentions(unknown, "'object'")) << unknown;
   EXPECT_TRUE(mentions(errorOfTask("instances: [4\n"), "mine.yaml"));
 }
 

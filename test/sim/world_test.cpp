@@ -90,10 +90,15 @@ TEST(World, TurnsShapesIntoClosedMeshesOfTheirColour) {
 }
 
 TEST(World, LoadsMeshesRelativeToTheUrdfByUrlAndFromThePackage) {
+  const TestFolder elsewhere;
+  const std::string slab = elsewhere.write("slab.obj", boxObj(4, 5, 0.1));
   const auto world = worldWithKitchen(R"(
     <visual><origin xyz="0 0 1" rpy="0 0 1.570796"/><geometry><mesh filename="wedge.obj" scale="1 1 0.5"/></geometry></visual>
-    <visual><geometry><mesh filename="package://early_fusion/meshes/kitchen/counter.obj"/></geometry></visual>)");
-  ASSERT_EQ(world->kitchen.size(), 3u);
+    <visual><geometry><mesh filename="package://early_fusion/meshes/kitchen/counter.obj"/></geometry></visual>
+    <visual><geometry><mesh filename="file://)" +
+                                      slab + R"("/></geometry></visual>)");
+  ASSERT_EQ(world->kitchen.size(), 4u);
+  EXPECT_TRUE(world->kitchen[3].mesh.bounds().sizes().isApprox(Eigen::Vector3f(4, 5, 0.1f), 1e-5f));
   EXPECT_TRUE(world->kitchen[1].mesh.bounds().sizes().isApprox(Eigen::Vector3f(1, 2, 1.5), 1e-5f));
   EXPECT_NEAR(world->kitchen[1].world_from_mesh.translation().z(), 1, 1e-9);
   EXPECT_GT(world->kitchen[2].mesh.triangleCount(), 2u);

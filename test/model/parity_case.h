@@ -1,0 +1,60 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/model/goal_policy.h"
+#include "policy_batches.h"
+
+namespace early_fusion::model {
+
+/// A network whose figures are compared between implementations.
+struct ParityCase {
+  int channels, fusion_block, image_size;
+};
+
+constexpr ParityCase kParityCases[] = {{16, 0, 32}, {16, 1, 32}, {16, 2, 32}, {16, 3, 32}, {32, 1, 48}, {48, 2, 16}};
+constexpr int kParityItems = 5;
+
+/// "Channels16FusionBlock0Size32", for INSTANTIATE_TEST_SUITE_P.
+inline std::string parityName(const testing::TestParamInfo<ParityCase>& info) {
+  return "Channels" + std::to_string(info.param.channels) + "FusionBlock" + std::to_string(info.param.fusion_block) +
+         "Size" + std::to_string(info.param.image_size);
+}
+
+inline PolicyOptions parityOptions(const ParityCase& network) {
+  PolicyOptions options;
+  options.channels = network.channels;
+  options.fusion_block = network.fusion_block;
+  options.image_size = network.image_size;
+  options.dropout = 0;
+  options.precision = "f32";
+  return options;
+}
+
+/// Draws the norms' scales, shifts and running statistics: with the initial ones and zeros, a lost scale or shift would
+/// not show.
+inline void drawNorms(nn::Parameters& parameters) {
+  core::Random random(9);
+  for (const nn::TensorSlice& slice : parameters.parameterSlices()) {
+    if (slice.name.find("norm") == std::string::npos) continue;
+    for (std::size_t i = 0; i < slice.size; ++i) {
+      parameters.values()[slice.offset + i] += static_cast<float>(random.uniform(-0.4, 0.4));
+    }
+  }
+  for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
+    for (std::size_t i = 0; i < slice.size; ++i) {
+      parameters.buffers()[slice.offset + i] = static_cast<float>(random.uniform(0.05, 0.5));
+    }
+  }
+}
+
+/// The case's policy with its first weights.
+inline auto parityPolicy(const ParityCase& network) {
+  auto policy = makePolicy(parityOptions(network), testVocabulary(kParityItems), 3);
+  drawNorms(policy->parameters());
+  policy->parametersChanged();
+  return policy;
+}
+
+}  // namespace early_fusion::model
