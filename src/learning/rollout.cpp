@@ -79,12 +79,11 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < count; ++i) observe(*seats[i], draw);
     for (int i = 0; i < count; ++i) {
-      const std::vector<TrajectoryStep>& steps = seats[i]->recorder.trajectory().steps;
-      situations[i] = {episodes[i], &seats[i]->episode, {}, steps.back().repeats, seats[i]->recorder.heading()};
-      situations[i].observation.request = &steps.back().request;
-      for (int age = 0; draw && age < model::kHistory && age <= s; ++age) {
-        situations[i].observation.frames[age] = steps[s - age].frame->data();
-      }
+      const Trajectory& trajectory = seats[i]->recorder.trajectory();
+      const TrajectoryStep& step = trajectory.steps.back();
+      situations[i] = {episodes[i], &seats[i]->episode, {}, step.repeats, seats[i]->recorder.heading()};
+      situations[i].observation.request = &step.request;
+      if (draw) situations[i].observation.frames = trajectory.frameStack(s);
     }
     agent.act(situations, actions);
     for (int i = 0; i < count; ++i) {

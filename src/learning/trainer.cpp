@@ -163,9 +163,7 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
 void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) const {
   const Trajectory& trajectory = window_[index.trajectory];
   model::Observation observation;
-  for (std::uint32_t age = 0; age < model::kHistory && age <= index.step; ++age) {
-    observation.frames[age] = trajectory.steps[index.step - age].frame->data();
-  }
+  observation.frames = trajectory.frameStack(index.step);
   const TrajectoryStep& step = trajectory.steps[index.step];
   const bool nothing_in_cone = step.nearest_item < 0;
   const auto add = [&](const Lesson& lesson) {

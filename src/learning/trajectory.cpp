@@ -4,7 +4,6 @@
 
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
-#include "early_fusion/model/goal_policy.h"
 
 namespace early_fusion::learning {
 
@@ -15,6 +14,10 @@ const std::vector<std::string>& teacherNames() {
 
 Teacher teacherFromName(const std::string& name) {
   return static_cast<Teacher>(core::indexOf(name, teacherNames(), "teacher"));
+}
+
+core::FrameStack Trajectory::frameStack(std::size_t step) const {
+  return core::frameStack(step, [this](std::size_t at) { return steps[at].frame->data(); });
 }
 
 double Trajectory::agreement() const {
@@ -41,7 +44,7 @@ const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state,
   step.label = expert::label(*cone_, instances_, state.present, state.orientation, state.request);
   const int nearest = cone_->nearest(state.orientation, state.present);
   step.nearest_item = nearest < 0 ? -1 : instances_[nearest].item;
-  if (latest_pan_.size() == model::kHistory) latest_pan_.erase(latest_pan_.begin());
+  if (latest_pan_.size() == core::kStackedFrames) latest_pan_.erase(latest_pan_.begin());
   latest_pan_.push_back(state.orientation.pan);
   step.lessons = lessons(state, moved);
   trajectory_.steps.push_back(std::move(step));
@@ -52,8 +55,8 @@ const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state,
 bool TrajectoryRecorder::repeatsLast() const {
   const std::vector<TrajectoryStep>& steps = trajectory_.steps;
   const std::size_t last = steps.size() - 1;
-  if (last < model::kHistory || steps[last].request != steps[last - 1].request) return false;
-  for (int age = 0; age < model::kHistory; ++age) {
+  if (last < core::kStackedFrames || steps[last].request != steps[last - 1].request) return false;
+  for (int age = 0; age < core::kStackedFrames; ++age) {
     if (steps[last - age].frame != steps[last - age - 1].frame) return false;
   }
   return true;
@@ -73,10 +76,7 @@ Lesson TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Re
   return lesson;
 }
 
-expert::Heading TrajectoryRecorder::heading() const {
-  static_assert(expert::kHeadingPictures == model::kHistory);
-  return expert::headingOver(latest_pan_);
-}
+expert::Heading TrajectoryRecorder::heading() const { return expert::headingOver(latest_pan_); }
 
 /// Lessons for the policy's own request, and for requests that this scene could have had: each 1 to requested_ of the
 /// instances that are left. None of those where the picture has not changed: a policy with another request would have

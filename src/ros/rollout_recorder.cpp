@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/ros/conversions.h"
 
 namespace early_fusion::nodes {
@@ -60,7 +60,7 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
     throw core::Error(stepName(scene) + ": was decided by weights '" + action.weights + "' (" + action.mode +
                       "); expected '" + plan_.weights + "' (" + plan_.mode + ")");
   }
-  const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, model::kHistory);
+  const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, core::kStackedFrames);
   if (action.frames != frames) {
     throw core::Error(stepName(scene) + ": was decided from " + std::to_string(action.frames) + " images, not " +
                       std::to_string(frames) + ": the policy has not seen the episode from its beginning");

@@ -278,8 +278,8 @@ double probabilityWhereItMayDoHarm(core::Action action, double unlikelihood, boo
   for (std::uint64_t episode = 1000; episode < 1040; ++episode) {
     const Trajectory trajectory = syntheticTrajectory(episode);
     model::Observation observation;
-    for (int age = 0; age < model::kHistory; ++age) {
-      observation.frames[age] = trajectory.steps[at_rest ? 0 : model::kHistory - 1 - age].frame->data();
+    for (int age = 0; age < core::kStackedFrames; ++age) {
+      observation.frames[age] = trajectory.steps[at_rest ? 0 : core::kStackedFrames - 1 - age].frame->data();
     }
     sum += probability(*trainer, observation, action);
   }

@@ -15,11 +15,11 @@ TYPED_TEST_SUITE(FrameStack, Types);
 
 TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
   for (int pixels : {1, 127, 128, 129, 1024}) {
-    std::vector<std::vector<std::uint8_t>> frames(kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
-    for (int f = 0; f < kStackedFrames; ++f) {
+    std::vector<std::vector<std::uint8_t>> frames(core::kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
+    for (int f = 0; f < core::kStackedFrames; ++f) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
-    const std::uint8_t* with_black[kStackedFrames] = {frames[0].data(), nullptr, frames[2].data()};
+    const core::FrameStack with_black = {frames[0].data(), nullptr, frames[2].data()};
     std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
     stackFrames(with_black, 0, pixels, x.data());
     for (int p = 0; p < pixels; ++p) {

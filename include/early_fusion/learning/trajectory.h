@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/expert/searching_expert.h"
 #include "early_fusion/sim/episode.h"
@@ -37,6 +38,9 @@ struct Trajectory {
   std::uint64_t episode = 0;
   std::vector<TrajectoryStep> steps;
   sim::Score score;
+
+  /// What a policy sees at `step`.
+  core::FrameStack frameStack(std::size_t step) const;
 
   /// Share of steps at which the policy did what the expert would have done.
   double agreement() const;
