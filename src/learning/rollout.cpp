@@ -13,10 +13,10 @@ constexpr int kLockstep = 10;
 }  // namespace
 
 struct RolloutRunner::Seat {
-  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number, Teacher teacher,
-       sim::Rasterizer& seat_rasterizer)
+  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number,
+       TrainingExpert training_expert, sim::Rasterizer& seat_rasterizer)
       : episode(world, task, sim::sampleEpisode(world, task, seed, number)),
-        recorder(seed, number, episode.setup().instances, episode.sharedCone(), teacher),
+        recorder(seed, number, episode.setup().instances, episode.sharedCone(), training_expert),
         rasterizer(seat_rasterizer) {}
 
   sim::Episode episode;
@@ -25,8 +25,9 @@ struct RolloutRunner::Seat {
   core::Image image;
 };
 
-RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher)
-    : world_(world), task_(task), seed_(seed), teacher_(teacher) {
+RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+                             TrainingExpert training_expert)
+    : world_(world), task_(task), seed_(seed), training_expert_(training_expert) {
   for (int i = 0; i < kLockstep; ++i) rasterizers_.emplace_back(world, world.options.image_size);
 }
 
@@ -64,7 +65,7 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     try {
-      seats[i] = std::make_unique<Seat>(world_, task_, seed_, episodes[i], teacher_, rasterizers_[i]);
+      seats[i] = std::make_unique<Seat>(world_, task_, seed_, episodes[i], training_expert_, rasterizers_[i]);
     } catch (...) {
       errors[i] = std::current_exception();
     }

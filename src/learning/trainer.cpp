@@ -28,11 +28,11 @@ core::OptionSet TrainingOptions::options() {
   set.add("skip_repeats", skip_repeats,
           "leave out steps that showed the policy what the step before did, and that it got right");
   set.add("batch_size", batch_size, 1, 1024, "frames", "in a training step, each with its requests");
-  set.add("requests_per_frame", requests_per_frame, 1, kRequestsPerFrame, "",
+  set.add("requests_per_frame", requests_per_frame, 1, kMaxRequestsPerFrame, "",
           "that a frame is labelled and learnt for: the policy's own, and others that could have been made there");
   set.add("vain_collects", vain_collects,
           "learn also what to do after COLLECT has been tried one move too early and nothing has changed");
-  set.addChoice("teacher", teacher, teacherNames(),
+  set.addChoice("teacher", teacher, trainingExpertNames(),
                 "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
                 "not in view");
   set.add("learning_rate", learning_rate, 0, 1, "", "of Adam, at the session's start");
@@ -124,8 +124,8 @@ std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   for (std::uint32_t t = 0; t < window_.size(); ++t) {
     for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) {
       const TrajectoryStep& step = window_[t].steps[s];
-      const bool skip =
-          options_.skip_repeats && step.repeats && expert::contains(step.lessons[0].label.optimal, step.action);
+      const bool skip = options_.skip_repeats && step.repeats &&
+                        expert::contains(step.labelled_requests[0].label.optimal, step.action);
       if (!skip) window_frames.push_back({t, s});
     }
   }
@@ -140,8 +140,8 @@ std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
   return drawn;
 }
 
-std::size_t Trainer::lessonCount(const TrajectoryStep& step) const {
-  return std::min<std::size_t>(options_.requests_per_frame, step.lessons.size());
+std::size_t Trainer::labelledCount(const TrajectoryStep& step) const {
+  return std::min<std::size_t>(options_.requests_per_frame, step.labelled_requests.size());
 }
 
 std::array<float, core::kActionCount> Trainer::actionWeights() const {
@@ -149,8 +149,9 @@ std::array<float, core::kActionCount> Trainer::actionWeights() const {
   double total = 0;
   for (const Trajectory& trajectory : window_) {
     for (const TrajectoryStep& step : trajectory.steps) {
-      for (std::size_t i = 0; i < lessonCount(step); ++i) counts[static_cast<int>(step.lessons[i].label.action)] += 1;
-      total += static_cast<double>(lessonCount(step));
+      for (std::size_t i = 0; i < labelledCount(step); ++i)
+        counts[static_cast<int>(step.labelled_requests[i].label.action)] += 1;
+      total += static_cast<double>(labelledCount(step));
     }
   }
   std::array<float, core::kActionCount> weights{};
@@ -166,14 +167,14 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
   observation.frames = trajectory.frameStack(index.step);
   const TrajectoryStep& step = trajectory.steps[index.step];
   const bool nothing_in_cone = step.nearest_item < 0;
-  const auto add = [&](const Lesson& lesson) {
+  const auto add = [&](const LabelledRequest& labelled) {
     model::Sample sample;
     sample.observation = observation;
-    sample.observation.request = &lesson.request;
-    sample.weight = action_weights_[static_cast<int>(lesson.label.action)];
-    sample.target = target(lesson.label);
+    sample.observation.request = &labelled.request;
+    sample.weight = action_weights_[static_cast<int>(labelled.label.action)];
+    sample.target = target(labelled.label);
     const bool nothing_moved = observation.frames[0] == observation.frames[1];
-    const bool requested = core::countOf(lesson.request, step.nearest_item) > 0;
+    const bool requested = core::countOf(labelled.request, step.nearest_item) > 0;
     const auto avoid = [&](core::Action action) {
       sample.unlikelihood[static_cast<int>(action)] = float(options_.unlikelihood);
     };
@@ -181,13 +182,13 @@ void Trainer::addSamples(FrameIndex index, std::vector<model::Sample>& batch) co
     if (nothing_in_cone ? nothing_moved : requested) avoid(core::Action::kRemove);
     batch.push_back(sample);
   };
-  for (std::size_t i = 0; i < lessonCount(step); ++i) add(step.lessons[i]);
+  for (std::size_t i = 0; i < labelledCount(step); ++i) add(step.labelled_requests[i]);
   const std::uint8_t *now = observation.frames[0], *before = observation.frames[1];
   if (!options_.vain_collects || !nothing_in_cone || now == before) return;
   // What the policy sees after COLLECT here: the same frame twice, or three times if it tries again.
   observation.frames = {now, now, index.step % 2 == 1 ? now : before};
-  for (std::size_t i = 0; i < lessonCount(step); ++i) {
-    if (step.lessons[i].label.steps == 2) add(step.lessons[i]);
+  for (std::size_t i = 0; i < labelledCount(step); ++i) {
+    if (step.labelled_requests[i].label.steps == 2) add(step.labelled_requests[i]);
   }
 }
 

@@ -137,7 +137,7 @@ void TrainingSession::resume() {
         }
         std::vector<Trajectory> window;
         const std::unique_ptr<Agent> agent = makeReplayAgent(episodes, actions);
-        RolloutRunner(*world_, trainingTask(), options_.seed, teacherFromName(options_.training.teacher))
+        RolloutRunner(*world_, trainingTask(), options_.seed, trainingExpertFromName(options_.training.teacher))
             .run({episodes.begin(), episodes.end()}, *agent, true,
                  [&](Trajectory trajectory) { window.push_back(std::move(trajectory)); });
         return window;
@@ -228,7 +228,7 @@ void TrainingSession::finish(const Evaluation& evaluation) {
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
   RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
-                       teacherFromName(trainer.options().teacher));
+                       trainingExpertFromName(trainer.options().teacher));
   const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
     const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);

@@ -43,7 +43,7 @@ void RolloutRecorder::begin(const Scene& scene) {
         " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
   learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),
-                                        plan_.teacher);
+                                        plan_.training_expert);
   recording_.emplace(Recording{scene.episode, std::move(episode), std::move(recorder), ::ros::Time(), ""});
 }
 

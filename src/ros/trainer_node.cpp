@@ -87,7 +87,7 @@ void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory
   publishWeights(plan.mode, plan.seed);
   plan.task = session_->options().task;
   plan.weights = weights_id_;
-  plan.teacher = learning::teacherFromName(session_->options().training.teacher);
+  plan.training_expert = learning::trainingExpertFromName(session_->options().training.teacher);
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 

@@ -32,10 +32,10 @@ void expectSame(const Trajectory& a, const Trajectory& b) {
     EXPECT_EQ(a.steps[s].action, b.steps[s].action);
     EXPECT_EQ(a.steps[s].request, b.steps[s].request);
     EXPECT_EQ(a.steps[s].label.action, b.steps[s].label.action);
-    ASSERT_EQ(a.steps[s].lessons.size(), b.steps[s].lessons.size());
-    for (std::size_t i = 0; i < a.steps[s].lessons.size(); ++i) {
-      EXPECT_EQ(a.steps[s].lessons[i].request, b.steps[s].lessons[i].request);
-      EXPECT_EQ(a.steps[s].lessons[i].label.action, b.steps[s].lessons[i].label.action);
+    ASSERT_EQ(a.steps[s].labelled_requests.size(), b.steps[s].labelled_requests.size());
+    for (std::size_t i = 0; i < a.steps[s].labelled_requests.size(); ++i) {
+      EXPECT_EQ(a.steps[s].labelled_requests[i].request, b.steps[s].labelled_requests[i].request);
+      EXPECT_EQ(a.steps[s].labelled_requests[i].label.action, b.steps[s].labelled_requests[i].label.action);
     }
   }
 }

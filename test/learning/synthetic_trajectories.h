@@ -30,7 +30,7 @@ inline Trajectory syntheticTrajectory(std::uint64_t episode) {
     step.action = core::Action(random.below(core::kActionCount));
     step.request = {random.below(3)};
     step.label = {core::Action(action), static_cast<expert::ActionSet>(1 << action), 0};
-    step.lessons = {{step.request, step.label}, {{random.below(3), 2}, {core::Action::kIdle, 1 << 6, 0}}};
+    step.labelled_requests = {{step.request, step.label}, {{random.below(3), 2}, {core::Action::kIdle, 1 << 6, 0}}};
     trajectory.steps.push_back(step);
   }
   trajectory.score.f1 = 0.5;

@@ -187,7 +187,7 @@ double lossWithRepeats(core::Action taken) {
       step.repeats = s % 2 == 1;
       step.action = taken;
       const core::Action action = step.repeats ? core::Action::kIdle : core::Action::kCollect;
-      step.lessons = {{{0}, {action, static_cast<expert::ActionSet>(1 << static_cast<int>(action)), 0}}};
+      step.labelled_requests = {{{0}, {action, static_cast<expert::ActionSet>(1 << static_cast<int>(action)), 0}}};
     }
   });
 }
@@ -203,7 +203,7 @@ TEST(Trainer, LearnsEveryRequestOfAFrame) {
   const auto trainer = makeTrainer(options);
   const double last = trainOn(*trainer, [&](Trajectory& trajectory) {
     for (TrajectoryStep& step : trajectory.steps) {
-      step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}, {{1}, {core::Action::kIdle, 1 << 6, 0}}};
+      step.labelled_requests = {{{0}, {core::Action::kCollect, 1 << 4, 1}}, {{1}, {core::Action::kIdle, 1 << 6, 0}}};
     }
   });
   EXPECT_LT(last, 0.3) << "half of the samples would leave 0.69 when only one of the labels were learnt";
@@ -243,8 +243,8 @@ double panAfterVainCollects(bool vain_collects) {
   trainOn(*trainer, [&](Trajectory& trajectory) {
     for (TrajectoryStep& step : trajectory.steps) {
       step.nearest_item = step.action < core::Action::kCollect ? -1 : 0;
-      step.lessons = {{{0}, {core::Action::kCollect, 1 << 4, 1}}};
-      if (step.nearest_item < 0) step.lessons = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
+      step.labelled_requests = {{{0}, {core::Action::kCollect, 1 << 4, 1}}};
+      if (step.nearest_item < 0) step.labelled_requests = {{{0}, {core::Action::kPanLeft, 1 << 0, 2}}};
     }
   });
   return meanProbability(*trainer, core::Action::kPanLeft);
@@ -270,8 +270,8 @@ double probabilityWhereItMayDoHarm(core::Action action, double unlikelihood, boo
       const bool harm = step.action >= core::Action::kCollect;
       step.nearest_item = right_item;
       if (harm) step.nearest_item = at_rest ? -1 : wrong_item;
-      step.lessons = {{request, {action, expert::bit(action), 1}}};
-      if (harm) step.lessons = {{request, {core::Action::kPanLeft, 1 << 0, 2}}};
+      step.labelled_requests = {{request, {action, expert::bit(action), 1}}};
+      if (harm) step.labelled_requests = {{request, {core::Action::kPanLeft, 1 << 0, 2}}};
     }
   });
   double sum = 0;
@@ -306,7 +306,8 @@ std::pair<double, double> probabilitiesOfTwoOptimalActions(double soft_labels) {
   const auto both =
       static_cast<expert::ActionSet>(expert::bit(core::Action::kPanLeft) | expert::bit(core::Action::kTiltUp));
   trainOn(*trainer, [&](Trajectory& trajectory) {
-    for (TrajectoryStep& step : trajectory.steps) step.lessons = {{request, {core::Action::kPanLeft, both, 3}}};
+    for (TrajectoryStep& step : trajectory.steps)
+      step.labelled_requests = {{request, {core::Action::kPanLeft, both, 3}}};
   });
   return {meanProbability(*trainer, core::Action::kPanLeft), meanProbability(*trainer, core::Action::kTiltUp)};
 }
@@ -330,7 +331,7 @@ double probabilityOfTheRareAction(double balance) {
   trainOn(*trainer, [&](Trajectory& trajectory) {
     for (TrajectoryStep& step : trajectory.steps) {
       const core::Action label = step.action == core::Action::kIdle ? core::Action::kCollect : core::Action::kPanLeft;
-      step.lessons = {{request, {label, expert::bit(label), 1}}};
+      step.labelled_requests = {{request, {label, expert::bit(label), 1}}};
     }
   });
   return meanProbability(*trainer, core::Action::kCollect);

@@ -37,7 +37,7 @@ class TrainingSessionTest : public testing::Test {
 
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
     RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
-                         teacherFromName(session.trainer().options().teacher));
+                         trainingExpertFromName(session.trainer().options().teacher));
     while (session.trainer().trajectoriesSeen() < trajectories) {
       const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
       const auto agent = makePolicyAgent(session.trainer().policy(), exploration, session.options().seed);

@@ -113,10 +113,11 @@ TEST_F(RolloutRecorderTest, RecordsWhatARolloutInOneProcessDoes) {
       EXPECT_EQ(recorded->steps[i].label.action, trajectory.steps[i].label.action);
       EXPECT_EQ(recorded->steps[i].label.optimal, trajectory.steps[i].label.optimal);
       EXPECT_EQ(recorded->steps[i].request, trajectory.steps[i].request);
-      ASSERT_EQ(recorded->steps[i].lessons.size(), trajectory.steps[i].lessons.size());
-      for (std::size_t k = 0; k < trajectory.steps[i].lessons.size(); ++k) {
-        EXPECT_EQ(recorded->steps[i].lessons[k].request, trajectory.steps[i].lessons[k].request);
-        EXPECT_EQ(recorded->steps[i].lessons[k].label.action, trajectory.steps[i].lessons[k].label.action);
+      ASSERT_EQ(recorded->steps[i].labelled_requests.size(), trajectory.steps[i].labelled_requests.size());
+      for (std::size_t k = 0; k < trajectory.steps[i].labelled_requests.size(); ++k) {
+        EXPECT_EQ(recorded->steps[i].labelled_requests[k].request, trajectory.steps[i].labelled_requests[k].request);
+        EXPECT_EQ(recorded->steps[i].labelled_requests[k].label.action,
+                  trajectory.steps[i].labelled_requests[k].label.action);
       }
     }
   }

@@ -17,7 +17,8 @@ namespace early_fusion::learning {
 class RolloutRunner {
  public:
   /// `world` must outlive the runner. @param seed of the session: (task, seed, number) is an episode.
-  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher = Teacher::kGreedy);
+  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+                TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   const sim::Task& task() const { return task_; }
   std::uint64_t seed() const { return seed_; }
@@ -46,7 +47,7 @@ class RolloutRunner {
   const sim::World& world_;
   sim::Task task_;
   std::uint64_t seed_;
-  Teacher teacher_;
+  TrainingExpert training_expert_;
   std::vector<sim::Rasterizer> rasterizers_;  // one a seat: its shadow map lasts while its scene does
   Observer observer_;
 };

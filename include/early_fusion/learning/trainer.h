@@ -25,7 +25,7 @@ struct TrainingOptions {
   int batch_size = 32;                 ///< frames in a training step, each with its requests
   int requests_per_frame = 1;          ///< that a frame is labelled and learnt for: the policy's own and others
   bool vain_collects = false;          ///< learn also what to do after a COLLECT that came one move too early
-  std::string teacher = "greedy";      ///< who labels: one of teacherNames()
+  std::string teacher = "greedy";      ///< who labels: one of trainingExpertNames()
   double learning_rate = 1e-4;         ///< at the session's start
   double final_learning_rate = 1e-4;   ///< at its end, reached along a cosine
   double soft_labels = 0;              ///< share of a target that goes to all optimal actions alike, not to the label
@@ -105,7 +105,7 @@ class Trainer {
   double learningRate() const;
   std::vector<FrameIndex> drawFrames() const;
   void average();
-  std::size_t lessonCount(const TrajectoryStep& step) const;
+  std::size_t labelledCount(const TrajectoryStep& step) const;
   void addSamples(FrameIndex index, std::vector<model::Sample>& batch) const;
   std::array<float, core::kActionCount> target(const expert::Label& label) const;
   std::array<float, core::kActionCount> actionWeights() const;

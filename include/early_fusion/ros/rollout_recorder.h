@@ -25,7 +25,7 @@ struct RolloutPlan {
   std::uint32_t episodes = 0;
   std::string weights;          ///< the id of the weights that must act
   std::string mode = "argmax";  ///< how they must choose
-  learning::Teacher teacher = learning::Teacher::kGreedy;
+  learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
 };
 
 /// Makes labelled trajectories of the messages of episodes that are played elsewhere.

@@ -47,7 +47,7 @@ class TrainerNode {
 
   void publishWeights(const std::string& mode, std::uint64_t seed);
   /// Publishes the weights as they stand and has the plan's episodes played with them.
-  /// @param plan without task, weights and teacher, which are the session's.
+  /// @param plan without task, weights and training expert, which are the session's.
   void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
   /// [0, 1]
