@@ -91,10 +91,9 @@ std::unique_ptr<Agent> makeIdleAgent() {
   return std::make_unique<SimpleAgent>([](const Situation&) { return core::Action::kIdle; });
 }
 
-std::unique_ptr<Agent> makeReplayAgent(std::vector<std::int64_t> episodes,
-                                       std::vector<std::vector<core::Action>> actions) {
+std::unique_ptr<Agent> makeReplayAgent(const std::vector<EpisodeActions>& episodes) {
   std::map<std::uint64_t, std::vector<core::Action>> by_episode;
-  for (std::size_t i = 0; i < episodes.size(); ++i) by_episode[episodes[i]] = std::move(actions[i]);
+  for (const EpisodeActions& episode : episodes) by_episode[episode.episode] = episode.actions;
   return std::make_unique<SimpleAgent>([by_episode = std::move(by_episode)](const Situation& situation) {
     return by_episode.at(situation.episode).at(situation.state->state().step);
   });

@@ -64,14 +64,12 @@ TEST(Rollout, TrajectoriesComeInOrderAndComplete) {
 
 TEST(Rollout, AReplayOfTheActionsGivesTheSameTrajectories) {
   const std::vector<Trajectory> first = rollOut(3, 4, *makeRandomAgent(5));
-  std::vector<std::int64_t> episodes;
-  std::vector<std::vector<core::Action>> actions;
+  std::vector<EpisodeActions> episodes;
   for (const Trajectory& trajectory : first) {
-    episodes.push_back(static_cast<std::int64_t>(trajectory.episode));
-    actions.emplace_back();
-    for (const TrajectoryStep& step : trajectory.steps) actions.back().push_back(step.action);
+    episodes.push_back({trajectory.episode, {}});
+    for (const TrajectoryStep& step : trajectory.steps) episodes.back().actions.push_back(step.action);
   }
-  const std::vector<Trajectory> again = rollOut(3, 4, *makeReplayAgent(episodes, actions));
+  const std::vector<Trajectory> again = rollOut(3, 4, *makeReplayAgent(episodes));
   for (int i = 0; i < 4; ++i) expectSame(first[i], again[i]);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,6 +37,16 @@ inline Trajectory syntheticTrajectory(std::uint64_t episode) {
   }
   trajectory.score.f1 = 0.5;
   return trajectory;
+}
+
+/// A Replay of synthetic trajectories, whose actions are a function of the episode.
+inline std::vector<Trajectory> replaySynthetic(const std::vector<EpisodeActions>& episodes) {
+  std::vector<Trajectory> trajectories;
+  for (const EpisodeActions& episode : episodes) {
+    trajectories.push_back(syntheticTrajectory(episode.episode));
+    for (int s = 0; s < kTinySteps; ++s) EXPECT_EQ(trajectories.back().steps[s].action, episode.actions[s]);
+  }
+  return trajectories;
 }
 
 }  // namespace early_fusion::learning

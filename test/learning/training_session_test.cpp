@@ -36,8 +36,7 @@ class TrainingSessionTest : public testing::Test {
   }
 
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
-    RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
-                         trainingExpertFromName(session.trainer().options().teacher));
+    RolloutRunner runner = session.trainingRunner();
     while (session.trainer().trajectoriesSeen() < trajectories) {
       const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
       const auto agent = makePolicyAgent(session.trainer().policy(), exploration, session.options().seed);
@@ -164,34 +163,6 @@ TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
   } catch (const core::Error& error) {
     EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
   }
-}
-
-TEST(SessionOptions, EveryShippedPresetLoads) {
-  for (const auto& entry : fs::directory_iterator(fs::path(core::shareFolder()) / "config" / "presets")) {
-    EXPECT_NO_THROW(resolveSessionOptions({{"preset", entry.path().stem().string()}}, "test")) << entry.path();
-  }
-  EXPECT_THROW(resolveSessionOptions({{"preset", "slow"}}, "test"), core::Error);
-}
-
-TEST(SessionOptions, EveryOneIsAnArgumentOfTrainLaunch) {
-  SessionOptions options;
-  const core::OptionSet set = options.options();
-  const std::string launch = core::readFile(fs::path(core::shareFolder()) / "launch" / "train.launch");
-  for (const core::Option& option : set.options()) {
-    if (option.name == "kind") continue;  // there is but one
-    EXPECT_NE(launch.find("<arg name=\"" + option.name + "\""), std::string::npos) << option.name;
-    const std::string name = "name=\"" + option.name + "\" ", value = "value=\"$(arg " + option.name + ")\"";
-    EXPECT_TRUE(launch.find(name + value) != std::string::npos ||
-                launch.find(name + "type=\"str\" " + value) != std::string::npos)
-        << option.name;
-  }
-}
-
-TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {
-  const SessionOptions options = resolveSessionOptions({{"learning_rate", "0.25"}, {"preset", "paper"}}, "test");
-  EXPECT_DOUBLE_EQ(options.training.learning_rate, 0.25);
-  EXPECT_EQ(options.training.window, 150);
-  EXPECT_DOUBLE_EQ(options.policy.dropout, 0.5);
 }
 
 }  // namespace

@@ -47,6 +47,12 @@ struct Trajectory {
   double agreement() const;
 };
 
+/// What it takes to play an episode again.
+struct EpisodeActions {
+  std::uint64_t episode = 0;
+  std::vector<core::Action> actions;  ///< one a step
+};
+
 /// Who labels what a policy is trained on.
 enum class TrainingExpert {
   kGreedy,     ///< the paper's expert, which sees everything: expert::label()
