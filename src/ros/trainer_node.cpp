@@ -131,16 +131,13 @@ void TrainerNode::onRoundTimer() {
 
 void TrainerNode::evaluate() {
   const int episodes = session_->options().evaluation_episodes;
-  evaluation_ = learning::Evaluation();
-  evaluation_.policy = session_->weightsPath();
-  evaluation_.task = session_->task().name;
-  evaluation_.seed = learning::kHeldOutSeed;
+  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task().name, learning::kHeldOutSeed);
   if (episodes == 0) {
     publishWeights("argmax", learning::kHeldOutSeed);
     return finish();
   }
   const auto keep = [this, episodes](const learning::Trajectory& trajectory) {
-    evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+    evaluation_.add(trajectory);
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
   RolloutPlan plan;
