@@ -27,10 +27,13 @@ double Trajectory::agreement() const {
   return static_cast<double>(agreeing) / static_cast<double>(steps.size());
 }
 
-TrajectoryRecorder::TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                                       std::shared_ptr<const sim::ConeTable> cone, TrainingExpert training_expert)
-    : seed_(seed), instances_(std::move(instances)), cone_(std::move(cone)), training_expert_(training_expert) {
-  trajectory_.episode = episode;
+TrajectoryRecorder::TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
+                                       TrainingExpert training_expert)
+    : seed_(key.seed),
+      instances_(episode.setup().instances),
+      cone_(episode.sharedCone()),
+      training_expert_(training_expert) {
+  trajectory_.episode = key.number;
 }
 
 const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame) {

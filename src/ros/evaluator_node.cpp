@@ -62,9 +62,9 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   }
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
-  plan.task = options_.task;
-  plan.seed = options_.seed;
-  plan.episodes = static_cast<std::uint32_t>(options_.episodes);
+  plan.goal.task = options_.task;
+  plan.goal.seed = options_.seed;
+  plan.goal.episodes = static_cast<std::uint32_t>(options_.episodes);
   plan.weights = policy->weights;
   plan.mode = policy->mode;
   ROS_INFO("scoring weights '%s' on %d episodes of task %s", plan.weights.c_str(), options_.episodes,

@@ -84,20 +84,20 @@ void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
 
 void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory,
                        std::function<void()> on_done) {
-  publishWeights(plan.mode, plan.seed);
-  plan.task = session_->options().task;
+  publishWeights(plan.mode, plan.goal.seed);
+  plan.goal.task = session_->options().task;
   plan.weights = weights_id_;
-  plan.training_expert = learning::trainingExpertFromName(session_->options().training.teacher);
+  plan.training_expert = session_->trainingExpert();
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
 void TrainerNode::rollOut() {
   const learning::Trainer& trainer = session_->trainer();
   RolloutPlan plan;
-  plan.seed = session_->options().seed;
-  plan.first_episode = trainer.trajectoriesSeen();
-  plan.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
-  plan.most_instances = trainer.options().most_instances;
+  plan.goal.seed = session_->options().seed;
+  plan.goal.first_episode = trainer.trajectoriesSeen();
+  plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
+  plan.goal.most_instances = trainer.options().most_instances;
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
@@ -141,8 +141,8 @@ void TrainerNode::evaluate() {
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
   RolloutPlan plan;
-  plan.seed = learning::kHeldOutSeed;
-  plan.episodes = static_cast<std::uint32_t>(episodes);
+  plan.goal.seed = learning::kHeldOutSeed;
+  plan.goal.episodes = static_cast<std::uint32_t>(episodes);
   play(plan, keep, [this] { finish(); });
   enterStage("evaluation");
 }

@@ -23,15 +23,13 @@ TEST(Trajectory, AgreementIsTheShareOfTheExpertsActions) {
 
 class TrajectoryRecorderTest : public testing::Test {
  protected:
-  TrajectoryRecorderTest()
-      : task_(sim::loadTask("hard")),
-        episode_(shippedWorld(), task_, sim::sampleEpisode(shippedWorld(), task_, 2, 6)) {}
+  TrajectoryRecorderTest() : task_(sim::loadTask("hard")), episode_(shippedWorld(), {task_, 2, 6}) {}
 
   /// Another one at every step.
   static std::vector<std::uint8_t> frameAt(int step) { return {1, 2, static_cast<std::uint8_t>(step)}; }
 
   Trajectory recordAll(std::uint64_t seed) {
-    TrajectoryRecorder recorder(seed, 6, episode_.setup().instances, episode_.sharedCone());
+    TrajectoryRecorder recorder({task_, seed, 6}, episode_);
     sim::Episode episode = episode_;
     while (!episode.finished()) {
       const core::Action action = recorder.record(episode.state(), frameAt(episode.state().step)).label.action;
@@ -80,7 +78,7 @@ TEST_F(TrajectoryRecorderTest, RequestsAskForWhatIsThereAndHaveTheExpertsLabel) 
 }
 
 TEST_F(TrajectoryRecorderTest, TheSearchingExpertKnowsTheWayThatTheCameraHasCome) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone(), TrainingExpert::kSearching);
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_, TrainingExpert::kSearching);
   sim::EpisodeSetup setup = episode_.setup();
   setup.orientation = {6, 12};  // the right is out of view
   sim::Episode episode(shippedWorld(), task_, setup);
@@ -158,7 +156,7 @@ TEST_F(TrajectoryRecorderTest, RequestsDependOnSeedEpisodeAndStepAlone) {
 }
 
 TEST_F(TrajectoryRecorderTest, WhereTheFrameStaysTheSameOnlyThePolicysOwnRequestIsLabelled) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_);
   sim::EpisodeState state = episode_.state();
   EXPECT_GT(recorder.record(state, frameAt(0)).labelled_requests.size(), 1u);
   ++state.step;
@@ -169,7 +167,7 @@ TEST_F(TrajectoryRecorderTest, WhereTheFrameStaysTheSameOnlyThePolicysOwnRequest
 }
 
 TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_);
   sim::EpisodeState state = episode_.state();
   const std::vector<std::uint8_t> a{1, 2, 3}, b{1, 2, 4};
   const core::Request request = state.request, less(request.begin() + 1, request.end());

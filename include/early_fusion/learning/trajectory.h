@@ -69,9 +69,9 @@ TrainingExpert trainingExpertFromName(const std::string& name);
 /// trainer node, which sees the states as messages.
 class TrajectoryRecorder {
  public:
-  /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
-  TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone,
+  /// @param key of the episode: with the step, it decides which other requests a frame is labelled for.
+  /// @param episode whose instances are labelled; need not outlive the constructor.
+  TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
                      TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   /// Labels a state and keeps it; states must come in order from step 0.
