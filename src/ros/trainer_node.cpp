@@ -1,12 +1,9 @@
 #include "early_fusion/ros/trainer_node.h"
 
 #include <early_fusion/Progress.h>
-#include <ros/param.h>
-#include <ros/this_node.h>
 
 #include <algorithm>
 
-#include "early_fusion/ros/parameters.h"
 #include "early_fusion/ros/topics.h"
 
 namespace early_fusion::nodes {
@@ -17,21 +14,6 @@ constexpr double kRoundPollSec = 0.01;
 
 /// Thrown through a round of training to end it.
 struct Stopped {};
-
-std::unique_ptr<learning::TrainingSession> makeSession() {
-  learning::SessionOptions known;
-  const core::OptionSet names = known.options();
-  std::vector<std::pair<std::string, std::string>> given;
-  for (auto& parameter : privateParameters(names)) {
-    if (names.has(parameter.first)) given.push_back(std::move(parameter));
-  }
-  learning::SessionOptions options = learning::resolveSessionOptions(given, ::ros::this_node::getName());
-  bool started = false;
-  if (::ros::param::get(kStartedParameter, started) && started) options.resume = true;
-  auto session = std::make_unique<learning::TrainingSession>(options, sim::loadWorld(options.world));
-  if (::ros::param::has(kStartedParameter)) ::ros::param::set(kStartedParameter, true);
-  return session;
-}
 
 }  // namespace
 
@@ -46,16 +28,16 @@ core::OptionSet TrainerNode::Options::options() {
   return set;
 }
 
-TrainerNode::TrainerNode(const Options& options)
-    : session_(makeSession()),
+TrainerNode::TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session)
+    : session_(std::move(session)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
       workers_(options.workers, session_->world(), options.stall_sec, health_),
       progress_publisher_(node_.advertise<Progress>(kProgressTopic, 4, true)) {
-  const learning::SessionOptions& session = session_->options();
+  const learning::SessionOptions& settings = session_->options();
   ROS_INFO("%s %s (%ld parameters) on task %s, preset %s, seed %lu, in %s",
-           session_->resumed() ? "going on with" : "training", session.policy.kind.c_str(),
-           static_cast<long>(session_->trainer().policy().parameters().values().size()), session.task.c_str(),
-           session.preset.c_str(), static_cast<unsigned long>(session.seed), session.output.c_str());
+           session_->resumed() ? "going on with" : "training", settings.policy.kind.c_str(),
+           static_cast<long>(session_->trainer().policy().parameters().values().size()), settings.task.c_str(),
+           settings.preset.c_str(), static_cast<unsigned long>(settings.seed), settings.output.c_str());
   progress_timer_ = node_.createWallTimer(::ros::WallDuration(options.progress_period_sec),
                                           [this](const ::ros::WallTimerEvent&) { publishProgress(); });
   round_timer_ = node_.createWallTimer(
