@@ -82,6 +82,8 @@ LabelledRequest TrajectoryRecorder::label(const sim::EpisodeState& state, const 
 
 expert::Heading TrajectoryRecorder::heading() const { return expert::headingOver(latest_pan_); }
 
+/// @param moved whether the frame has changed.
+///
 /// The policy's own request, then others that this scene could have had: each asks for 1 to requested_ of the instances
 /// that are left. Where the frame has not changed, only the policy's own: with another request it would have acted
 /// otherwise, and an unchanged frame after COLLECT must always mean that it failed.

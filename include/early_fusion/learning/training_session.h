@@ -73,8 +73,8 @@ class TrainingSession {
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;
   bool resumed_ = false;
-  double elapsed_before_sec_ = 0;
-  std::uint64_t trajectories_before_ = 0;
+  double elapsed_before_sec_ = 0;          // in the session's earlier runs
+  std::uint64_t trajectories_before_ = 0;  // likewise
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

@@ -35,15 +35,16 @@ struct TrajectoryStep {
   bool repeats = false;   ///< observation and request are those of the step before
 };
 
+/// A labelled rollout of one episode.
 struct Trajectory {
-  std::uint64_t episode = 0;
+  std::uint64_t episode = 0;  ///< its number in the session
   std::vector<TrajectoryStep> steps;
   sim::Score score;
 
   /// What a policy sees at `step`.
   core::FrameStack frameStack(std::size_t step) const;
 
-  /// Share of steps at which the policy did what the expert would have done.
+  /// Share of steps at which the policy did what the greedy expert would have done.
   double agreement() const;
 };
 
@@ -99,7 +100,7 @@ class TrajectoryRecorder {
   std::shared_ptr<const sim::ConeTable> cone_;
   TrainingExpert training_expert_;
   int requested_ = 0;            // instances requested at step 0
-  std::vector<int> latest_pan_;  // of the frames that the policy sees [steps], the oldest first
+  std::vector<int> latest_pan_;  // pan [steps] of the last kStackedFrames frames, the oldest first
   Trajectory trajectory_;
 };
 
