@@ -9,7 +9,7 @@
 
 namespace early_fusion::cli {
 
-void addOptionFlags(CLI::App& command, const core::OptionSet& set, GivenOptions& given) {
+void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given) {
   for (const core::Option& option : set.options()) {
     std::string flag = "--" + option.name;
     std::replace(flag.begin(), flag.end(), '_', '-');

@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "early_fusion/core/options.h"
 
@@ -16,12 +14,9 @@ void addRender(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);
 
-/// The options that a user gave, as (name, value), in the order of the command line.
-using GivenOptions = std::vector<std::pair<std::string, std::string>>;
-
 /// Declares a flag for every option of `set`, "--learning-rate" for learning_rate; what is given lands in `given`,
 /// which must outlive the app.
-void addOptionFlags(CLI::App& command, const core::OptionSet& set, GivenOptions& given);
+void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given);
 
 /// Writes to the file, or to standard output when it is "-".
 void writeTo(const std::string& file, const std::string& text);

@@ -16,7 +16,7 @@ void report(const learning::Progress& progress) {
   }
 }
 
-void train(const GivenOptions& given) {
+void train(const core::GivenOptions& given) {
   const learning::SessionOptions options = learning::resolveSessionOptions(given, "command line");
   learning::TrainingSession session(options, sim::loadWorld(options.world));
   std::cerr << (session.resumed() ? "Going on with " : "Training ") << options.policy.kind << " ("
@@ -35,7 +35,7 @@ void addTrain(CLI::App& app) {
       app.add_subcommand("train",
                          "Train a policy in this process, and score it on held-out episodes.\n"
                          "Example: early_fusion train --task medium --channels 32 --output runs/medium32");
-  const auto given = std::make_shared<GivenOptions>();
+  const auto given = std::make_shared<core::GivenOptions>();
   learning::SessionOptions defaults;
   addOptionFlags(*command, defaults.options(), *given);
   command->get_option("--output")->required();

@@ -40,12 +40,12 @@ bool isOccluder(const sim::ConeTable& cone, int instance) {
 }  // namespace
 
 Heading headingOver(const std::vector<int>& pans) {
-  const std::size_t seen = std::min(pans.size(), kHeadingPictures);
+  const std::size_t seen = std::min<std::size_t>(pans.size(), core::kStackedFrames);
   for (std::size_t age = 1; age < seen; ++age) {
     const int panned = pans[pans.size() - age] - pans[pans.size() - age - 1];
     if (panned != 0) return panned > 0 ? Heading::kLeft : Heading::kRight;
   }
-  return seen < kHeadingPictures ? Heading::kStart : Heading::kNone;
+  return seen < core::kStackedFrames ? Heading::kStart : Heading::kNone;
 }
 
 bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation) {

@@ -37,7 +37,7 @@ class PolicyAgent : public Agent {
   using Row = Eigen::Matrix<float, 1, core::kActionCount>;
   std::vector<model::Observation> observations_;
   model::Probabilities probabilities_;
-  std::map<std::uint64_t, Row> last_;  // of each episode
+  std::map<std::uint64_t, Row> last_;  // probabilities by episode: a step that repeats the one before has the same
 };
 
 /// An agent that treats every situation on its own.
@@ -91,10 +91,9 @@ std::unique_ptr<Agent> makeIdleAgent() {
   return std::make_unique<SimpleAgent>([](const Situation&) { return core::Action::kIdle; });
 }
 
-std::unique_ptr<Agent> makeReplayAgent(std::vector<std::int64_t> episodes,
-                                       std::vector<std::vector<core::Action>> actions) {
+std::unique_ptr<Agent> makeReplayAgent(const std::vector<EpisodeActions>& episodes) {
   std::map<std::uint64_t, std::vector<core::Action>> by_episode;
-  for (std::size_t i = 0; i < episodes.size(); ++i) by_episode[episodes[i]] = std::move(actions[i]);
+  for (const EpisodeActions& episode : episodes) by_episode[episode.episode] = episode.actions;
   return std::make_unique<SimpleAgent>([by_episode = std::move(by_episode)](const Situation& situation) {
     return by_episode.at(situation.episode).at(situation.state->state().step);
   });

@@ -16,6 +16,13 @@ double mean(const std::vector<EpisodeOutcome>& outcomes, Measure measure) {
 
 }  // namespace
 
+Evaluation::Evaluation(std::string policy_name, std::string task_name, std::uint64_t episodes_seed)
+    : policy(std::move(policy_name)), task(std::move(task_name)), seed(episodes_seed) {}
+
+void Evaluation::add(const Trajectory& trajectory) {
+  outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+}
+
 double Evaluation::f1() const {
   return mean(outcomes, [](const EpisodeOutcome& outcome) { return outcome.score.f1; });
 }
@@ -62,12 +69,9 @@ std::string Evaluation::summary() const {
 
 Evaluation evaluate(RolloutRunner& runner, Agent& agent, int episodes, const std::string& policy_name,
                     const std::function<void(int)>& progress) {
-  Evaluation evaluation;
-  evaluation.policy = policy_name;
-  evaluation.task = runner.task().name;
-  evaluation.seed = runner.seed();
-  runner.run(0, episodes, agent, false, [&](Trajectory trajectory) {
-    evaluation.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+  Evaluation evaluation(policy_name, runner.task().name, runner.seed());
+  runner.run(0, episodes, agent, false, [&](const Trajectory& trajectory) {
+    evaluation.add(trajectory);
     if (progress) progress(static_cast<int>(evaluation.outcomes.size()));
   });
   return evaluation;

@@ -7,17 +7,15 @@ namespace early_fusion::learning {
 
 namespace {
 
-/// Enough for both cores and a batch worth its overhead; few enough to stay in the cache.
+/// Episodes in lockstep: enough for both cores and for a batch of decisions, few enough to stay in the cache.
 constexpr int kLockstep = 10;
 
 }  // namespace
 
-struct RolloutRunner::Seat {
-  Seat(const sim::World& world, const sim::Task& task, std::uint64_t seed, std::uint64_t number, Teacher teacher,
-       sim::Rasterizer& seat_rasterizer)
-      : episode(world, task, sim::sampleEpisode(world, task, seed, number)),
-        recorder(seed, number, episode.setup().instances, episode.sharedCone(), teacher),
-        rasterizer(seat_rasterizer) {}
+struct RolloutRunner::LockstepEpisode {
+  LockstepEpisode(const sim::World& world, const sim::EpisodeKey& key, TrainingExpert training_expert,
+                  sim::Rasterizer& own_rasterizer)
+      : episode(world, key), recorder(key, episode, training_expert), rasterizer(own_rasterizer) {}
 
   sim::Episode episode;
   TrajectoryRecorder recorder;
@@ -25,8 +23,9 @@ struct RolloutRunner::Seat {
   core::Image image;
 };
 
-RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher)
-    : world_(world), task_(task), seed_(seed), teacher_(teacher) {
+RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+                             TrainingExpert training_expert)
+    : world_(world), task_(task), seed_(seed), training_expert_(training_expert) {
   for (int i = 0; i < kLockstep; ++i) rasterizers_.emplace_back(world, world.options.image_size);
 }
 
@@ -46,25 +45,16 @@ void RolloutRunner::run(const std::vector<std::uint64_t>& episodes, Agent& agent
   }
 }
 
-void RolloutRunner::observe(Seat& seat, bool draw) {
-  const sim::EpisodeState& state = seat.episode.state();
-  if (draw) {
-    seat.rasterizer.setObjects(sim::presentObjects(world_, seat.episode.setup().instances, state.present));
-    seat.rasterizer.render(world_.rig.worldFromCamera(state.orientation), seat.image);
-  }
-  seat.recorder.record(state, seat.image.rgb);
-}
-
-void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
-                                 const std::function<void(Trajectory)>& finished) {
+std::vector<std::unique_ptr<RolloutRunner::LockstepEpisode>> RolloutRunner::begin(
+    const std::vector<std::uint64_t>& episodes) {
   const int count = static_cast<int>(episodes.size());
-  const bool draw = keep_frames || agent.needsFrames();
-  std::vector<std::unique_ptr<Seat>> seats(count);
+  std::vector<std::unique_ptr<LockstepEpisode>> lockstep(count);
   std::vector<std::exception_ptr> errors(count);
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     try {
-      seats[i] = std::make_unique<Seat>(world_, task_, seed_, episodes[i], teacher_, rasterizers_[i]);
+      const sim::EpisodeKey key{task_, seed_, episodes[i]};
+      lockstep[i] = std::make_unique<LockstepEpisode>(world_, key, training_expert_, rasterizers_[i]);
     } catch (...) {
       errors[i] = std::current_exception();
     }
@@ -72,28 +62,46 @@ void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Age
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
+  return lockstep;
+}
 
+void RolloutRunner::observe(LockstepEpisode& one, bool draw) {
+  const sim::EpisodeState& state = one.episode.state();
+  if (draw) {
+    one.rasterizer.setObjects(sim::presentObjects(world_, one.episode.setup().instances, state.present));
+    one.rasterizer.render(world_.rig.worldFromCamera(state.orientation), one.image);
+  }
+  one.recorder.record(state, one.image.rgb);
+}
+
+Situation RolloutRunner::situation(const LockstepEpisode& one, bool drawn) const {
+  const Trajectory& trajectory = one.recorder.trajectory();
+  const TrajectoryStep& step = trajectory.steps.back();
+  Situation situation{trajectory.episode, &one.episode, {}, step.repeats, one.recorder.heading()};
+  situation.observation.request = &step.request;
+  if (drawn) situation.observation.frames = trajectory.frameStack(trajectory.steps.size() - 1);
+  return situation;
+}
+
+void RolloutRunner::playTogether(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
+                                 const std::function<void(Trajectory)>& finished) {
+  const int count = static_cast<int>(episodes.size());
+  const bool draw = keep_frames || agent.needsFrames();
+  const std::vector<std::unique_ptr<LockstepEpisode>> lockstep = begin(episodes);
   std::vector<Situation> situations(count);
   std::vector<core::Action> actions(count);
   for (int s = 0; s < task_.steps; ++s) {
 #pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < count; ++i) observe(*seats[i], draw);
-    for (int i = 0; i < count; ++i) {
-      const std::vector<TrajectoryStep>& steps = seats[i]->recorder.trajectory().steps;
-      situations[i] = {episodes[i], &seats[i]->episode, {}, steps.back().repeats, seats[i]->recorder.heading()};
-      situations[i].observation.request = &steps.back().request;
-      for (int age = 0; draw && age < model::kHistory && age <= s; ++age) {
-        situations[i].observation.frames[age] = steps[s - age].frame->data();
-      }
-    }
+    for (int i = 0; i < count; ++i) observe(*lockstep[i], draw);
+    for (int i = 0; i < count; ++i) situations[i] = situation(*lockstep[i], draw);
     agent.act(situations, actions);
     for (int i = 0; i < count; ++i) {
-      seats[i]->recorder.setAction(actions[i]);
-      if (observer_) observer_(episodes[i], seats[i]->episode, seats[i]->recorder.trajectory().steps.back());
-      seats[i]->episode.step(actions[i]);
+      lockstep[i]->recorder.setAction(actions[i]);
+      if (observer_) observer_(episodes[i], lockstep[i]->episode, lockstep[i]->recorder.trajectory().steps.back());
+      lockstep[i]->episode.step(actions[i]);
     }
   }
-  for (int i = 0; i < count; ++i) finished(seats[i]->recorder.finish(seats[i]->episode.score()));
+  for (int i = 0; i < count; ++i) finished(lockstep[i]->recorder.finish(lockstep[i]->episode.score()));
 }
 
 }  // namespace early_fusion::learning

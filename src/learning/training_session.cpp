@@ -16,15 +16,14 @@ namespace early_fusion::learning {
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
-// Metadata. The first three are YAML: the options but for where and whether to resume, and what the task's and the
-// world's files say.
-constexpr char kOptions[] = "session.options";
-constexpr char kTask[] = "session.task";
-constexpr char kWorld[] = "session.world";
+// Keys of a checkpoint's metadata.
+constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
+constexpr char kTask[] = "session.task";        // sim::Task as YAML
+constexpr char kWorld[] = "session.world";      // sim::WorldOptions as YAML
 constexpr char kElapsed[] = "session.elapsed_sec";
-constexpr char kCurve[] = "session.curve";
+constexpr char kCurve[] = "session.curve";  // curve.csv
 
-/// The options that decide what is learnt.
+/// The options that decide the weights, as YAML: the others have their defaults.
 std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
@@ -32,7 +31,7 @@ std::string learningOptions(SessionOptions options) {
   return options.options().toYaml();
 }
 
-/// What must not change while a session goes on: YAML texts by their metadata keys.
+/// What must be the same when a session is resumed: YAML texts by their metadata keys.
 std::array<std::pair<const char*, std::string>, 3> settings(const SessionOptions& options, sim::Task task,
                                                             sim::WorldOptions world) {
   return {{{kOptions, learningOptions(options)}, {kTask, task.options().toYaml()}, {kWorld, world.options().toYaml()}}};
@@ -48,7 +47,7 @@ Settings parseSettings(const std::string& yaml, const std::string& source) {
   }
 }
 
-/// @throws Error naming the first setting that one of the two YAML texts has and the other hasn't, or has differently.
+/// @throws Error naming the first setting in which the two YAML texts differ.
 void checkSame(const std::string& stored, const std::string& wanted, const std::string& source) {
   const Settings before = parseSettings(stored, source), now = parseSettings(wanted, source);
   Settings all = before;
@@ -74,33 +73,6 @@ double parseSeconds(const std::string& text, const std::string& source) {
 
 }  // namespace
 
-core::OptionSet SessionOptions::options() {
-  core::OptionSet set("session");
-  set.add("task", task, "simple, medium, hard, or a task's YAML file");
-  set.add("preset", preset,
-          "fast, paper, or a YAML file: how the policy learns; its values replace the defaults of other options");
-  set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
-  set.add("seed", seed, "decides episodes, first weights and every other draw");
-  set.add("output", output, "run folder: checkpoint, weights, learning curve, result");
-  set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
-  set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
-          "held-out ones that the final score is the mean of");
-  set.include(policy.options());
-  set.include(training.options());
-  return set;
-}
-
-SessionOptions resolveSessionOptions(const std::vector<std::pair<std::string, std::string>>& given,
-                                     const std::string& source) {
-  SessionOptions options;
-  for (const auto& [name, value] : given) {
-    if (name == "preset") options.preset = value;
-  }
-  options.options().setFromYamlFile(core::findConfig("presets", options.preset));
-  for (const auto& [name, value] : given) options.options().set(name, value, source);
-  return options;
-}
-
 TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const sim::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
@@ -113,13 +85,16 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " pixels; set both to the same");
   }
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
-  std::error_code unreachable;  // as it will be to the one who writes there, who tells
-  const bool there = std::filesystem::exists(path(kCheckpoint), unreachable);
+  std::error_code ignored;  // the first write reports it
+  const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
   if (there && !options_.resume) {
     throw core::Error(options_.output + ": holds a training session already; resume it, or choose another folder");
   }
-  if (there) resume();
-  if (!there) core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
+  if (there) {
+    resume();
+  } else {
+    core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
+  }
 }
 
 void TrainingSession::resume() {
@@ -128,21 +103,7 @@ void TrainingSession::resume() {
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }
-  trainer_->restore(
-      file, source,
-      [&](const std::vector<std::int64_t>& episodes, const std::vector<std::vector<core::Action>>& actions) {
-        for (const std::vector<core::Action>& trajectory : actions) {
-          if (static_cast<int>(trajectory.size()) == task_.steps) continue;
-          throw core::Error(source + ": has trajectories of " + std::to_string(trajectory.size()) + " steps, not " +
-                            std::to_string(task_.steps) + " as the task; the file is damaged");
-        }
-        std::vector<Trajectory> window;
-        const std::unique_ptr<Agent> agent = makeReplayAgent(episodes, actions);
-        RolloutRunner(*world_, trainingTask(), options_.seed, teacherFromName(options_.training.teacher))
-            .run({episodes.begin(), episodes.end()}, *agent, true,
-                 [&](Trajectory trajectory) { window.push_back(std::move(trajectory)); });
-        return window;
-      });
+  trainer_->restore(file, source, [this](const std::vector<EpisodeActions>& episodes) { return replay(episodes); });
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
   trajectories_before_ = trainer_->trajectoriesSeen();
   curve_ = LearningCurve::parse(file.meta(kCurve, source), source);
@@ -150,7 +111,22 @@ void TrainingSession::resume() {
   resumed_ = true;
 }
 
-/// The checkpoint last: a round whose other files are there without it is trained again, and writes them again.
+std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions>& episodes) const {
+  std::vector<std::uint64_t> numbers;
+  for (const EpisodeActions& episode : episodes) {
+    numbers.push_back(episode.episode);
+    if (static_cast<int>(episode.actions.size()) == task_.steps) continue;
+    throw core::Error(path(kCheckpoint) + ": has trajectories of " + std::to_string(episode.actions.size()) +
+                      " steps, not " + std::to_string(task_.steps) + " as the task; the file is damaged");
+  }
+  std::vector<Trajectory> trajectories;
+  const std::unique_ptr<Agent> agent = makeReplayAgent(episodes);
+  trainingRunner().run(numbers, *agent, true,
+                       [&](Trajectory trajectory) { trajectories.push_back(std::move(trajectory)); });
+  return trajectories;
+}
+
+/// Writes the checkpoint last: if the process dies before that, the round is trained again and writes all files again.
 void TrainingSession::save() const {
   weights().write(weightsPath());
   core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
@@ -228,8 +204,7 @@ void TrainingSession::finish(const Evaluation& evaluation) {
 
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
-  RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
-                       teacherFromName(trainer.options().teacher));
+  RolloutRunner runner = session.trainingRunner();
   const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
     const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);

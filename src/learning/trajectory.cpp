@@ -4,17 +4,20 @@
 
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
-#include "early_fusion/model/goal_policy.h"
 
 namespace early_fusion::learning {
 
-const std::vector<std::string>& teacherNames() {
+const std::vector<std::string>& trainingExpertNames() {
   static const std::vector<std::string> names{"greedy", "searching"};
   return names;
 }
 
-Teacher teacherFromName(const std::string& name) {
-  return static_cast<Teacher>(core::indexOf(name, teacherNames(), "teacher"));
+TrainingExpert trainingExpertFromName(const std::string& name) {
+  return static_cast<TrainingExpert>(core::indexOf(name, trainingExpertNames(), "teacher"));
+}
+
+core::FrameStack Trajectory::frameStack(std::size_t step) const {
+  return core::frameStack(step, [this](std::size_t at) { return steps[at].frame->data(); });
 }
 
 double Trajectory::agreement() const {
@@ -24,10 +27,13 @@ double Trajectory::agreement() const {
   return static_cast<double>(agreeing) / static_cast<double>(steps.size());
 }
 
-TrajectoryRecorder::TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                                       std::shared_ptr<const sim::ConeTable> cone, Teacher teacher)
-    : seed_(seed), instances_(std::move(instances)), cone_(std::move(cone)), teacher_(teacher) {
-  trajectory_.episode = episode;
+TrajectoryRecorder::TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
+                                       TrainingExpert training_expert)
+    : seed_(key.seed),
+      instances_(episode.setup().instances),
+      cone_(episode.sharedCone()),
+      training_expert_(training_expert) {
+  trajectory_.episode = key.number;
 }
 
 const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame) {
@@ -41,9 +47,9 @@ const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state,
   step.label = expert::label(*cone_, instances_, state.present, state.orientation, state.request);
   const int nearest = cone_->nearest(state.orientation, state.present);
   step.nearest_item = nearest < 0 ? -1 : instances_[nearest].item;
-  if (latest_pan_.size() == model::kHistory) latest_pan_.erase(latest_pan_.begin());
+  if (latest_pan_.size() == core::kStackedFrames) latest_pan_.erase(latest_pan_.begin());
   latest_pan_.push_back(state.orientation.pan);
-  step.lessons = lessons(state, moved);
+  step.labelled_requests = labelRequests(state, moved);
   trajectory_.steps.push_back(std::move(step));
   trajectory_.steps.back().repeats = repeatsLast();
   return trajectory_.steps.back();
@@ -52,8 +58,8 @@ const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state,
 bool TrajectoryRecorder::repeatsLast() const {
   const std::vector<TrajectoryStep>& steps = trajectory_.steps;
   const std::size_t last = steps.size() - 1;
-  if (last < model::kHistory || steps[last].request != steps[last - 1].request) return false;
-  for (int age = 0; age < model::kHistory; ++age) {
+  if (last < core::kStackedFrames || steps[last].request != steps[last - 1].request) return false;
+  for (int age = 0; age < core::kStackedFrames; ++age) {
     if (steps[last - age].frame != steps[last - age - 1].frame) return false;
   }
   return true;
@@ -64,42 +70,42 @@ Trajectory TrajectoryRecorder::finish(const sim::Score& score) {
   return std::move(trajectory_);
 }
 
-Lesson TrajectoryRecorder::lesson(const sim::EpisodeState& state, const core::Request& request) const {
-  Lesson lesson;
-  lesson.request = request;
-  lesson.label = teacher_ == Teacher::kGreedy
-                     ? expert::label(*cone_, instances_, state.present, state.orientation, request)
-                     : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
-  return lesson;
+LabelledRequest TrajectoryRecorder::label(const sim::EpisodeState& state, const core::Request& request) const {
+  LabelledRequest labelled;
+  labelled.request = request;
+  labelled.label =
+      training_expert_ == TrainingExpert::kGreedy
+          ? expert::label(*cone_, instances_, state.present, state.orientation, request)
+          : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
+  return labelled;
 }
 
-expert::Heading TrajectoryRecorder::heading() const {
-  static_assert(expert::kHeadingPictures == model::kHistory);
-  return expert::headingOver(latest_pan_);
-}
+expert::Heading TrajectoryRecorder::heading() const { return expert::headingOver(latest_pan_); }
 
-/// Lessons for the policy's own request, and for requests that this scene could have had: each 1 to requested_ of the
-/// instances that are left. None of those where the picture has not changed: a policy with another request would have
-/// done something else, so whoever tries to COLLECT and sees the same again must be told of nothing but its mistake.
-std::vector<Lesson> TrajectoryRecorder::lessons(const sim::EpisodeState& state, bool moved) const {
-  constexpr int kDraws = 2 * kRequestsPerFrame;  // some give a request again that is there already
-  std::vector<Lesson> lessons{lesson(state, state.request)};
+/// @param moved whether the frame has changed.
+///
+/// The policy's own request, then others that this scene could have had: each asks for 1 to requested_ of the instances
+/// that are left. Where the frame has not changed, only the policy's own: with another request it would have acted
+/// otherwise, and an unchanged frame after COLLECT must always mean that it failed.
+std::vector<LabelledRequest> TrajectoryRecorder::labelRequests(const sim::EpisodeState& state, bool moved) const {
+  constexpr int kDraws = 2 * kMaxRequestsPerFrame;  // some draws repeat a request
+  std::vector<LabelledRequest> labelled{label(state, state.request)};
   std::vector<int> items;
   for (std::size_t i = 0; i < instances_.size(); ++i) {
     if ((state.present >> i) & 1) items.push_back(instances_[i].item);
   }
-  if (!moved || items.empty() || requested_ == 0) return lessons;
+  if (!moved || items.empty() || requested_ == 0) return labelled;
   core::Random random(seed_, {core::kRelabelStream, trajectory_.episode, static_cast<std::uint64_t>(state.step)});
-  for (int draw = 0; draw < kDraws && lessons.size() < kRequestsPerFrame; ++draw) {
+  for (int draw = 0; draw < kDraws && labelled.size() < kMaxRequestsPerFrame; ++draw) {
     random.shuffle(items);
     core::Request request(items.begin(),
                           items.begin() + std::min<std::size_t>(items.size(), 1 + random.below(requested_)));
     std::sort(request.begin(), request.end());
-    const bool known =
-        std::any_of(lessons.begin(), lessons.end(), [&](const Lesson& other) { return other.request == request; });
-    if (!known) lessons.push_back(lesson(state, request));
+    const bool known = std::any_of(labelled.begin(), labelled.end(),
+                                   [&](const LabelledRequest& other) { return other.request == request; });
+    if (!known) labelled.push_back(label(state, request));
   }
-  return lessons;
+  return labelled;
 }
 
 }  // namespace early_fusion::learning

@@ -9,8 +9,6 @@
 
 namespace early_fusion::model {
 
-static_assert(kHistory == nn::kStackedFrames, "the first layer's kernels are written for this history");
-
 template <class T>
 EarlyFusion<T>::EarlyFusion(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed)
     : options_(options),

@@ -12,7 +12,7 @@ constexpr std::uint8_t kGrey = 128;
 constexpr int kBatch = 32;
 constexpr float kStrongestTint = 0.6f;
 
-using Frames = std::array<std::vector<std::uint8_t>, kHistory>;
+using Frames = std::array<std::vector<std::uint8_t>, core::kStackedFrames>;
 
 /// Paints cell (row, column) of the grid grey, with half a cell around it: what a cell's edge cuts off would show.
 void paint(std::vector<std::uint8_t>& frame, int size, int grid, int row, int column) {
@@ -28,7 +28,7 @@ void paint(std::vector<std::uint8_t>& frame, int size, int grid, int row, int co
 Observation occluded(const Observation& observation, int size, int grid, int cell, Frames& frames) {
   Observation result;
   result.request = observation.request;
-  for (int age = 0; age < kHistory; ++age) {
+  for (int age = 0; age < core::kStackedFrames; ++age) {
     if (observation.frames[age] == nullptr) continue;
     frames[age].assign(observation.frames[age], observation.frames[age] + 3 * size * size);
     paint(frames[age], size, grid, cell / grid, cell % grid);

@@ -66,7 +66,7 @@ int VisionTrunk<T>::firstMap(const ViewBatch& batch, int block, int convolution)
 template <class T>
 const T* VisionTrunk<T>::blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    nn::stackFrames(batch.views[convolution].data(), 0, pixels(), scratch.input.data());
+    nn::stackFrames(batch.views[convolution], 0, pixels(), scratch.input.data());
   } else {
     blocks_[block - 1].output(convolution, scratch.input.data());
   }
@@ -149,9 +149,9 @@ nn::MapLayout VisionTrunk<T>::predictionLayout(int block) const {
 }
 
 template <class T>
-void VisionTrunk<T>::predict(int thread, const Frames& frames, const float* goal, float* features) {
+void VisionTrunk<T>::predict(int thread, const core::FrameStack& frames, const float* goal, float* features) {
   Scratch& scratch = scratch_[thread];
-  nn::stackFrames(frames.data(), 0, pixels(), scratch.input.data());
+  nn::stackFrames(frames, 0, pixels(), scratch.input.data());
   T* in = scratch.input.data();
   T* out = scratch.output.data();
   for (int b = 0; b < kBlocks; ++b) {
@@ -162,15 +162,15 @@ void VisionTrunk<T>::predict(int thread, const Frames& frames, const float* goal
 }
 
 template <class T>
-void VisionTrunk<T>::stackOnAllThreads(const Frames& frames, T* x) {
+void VisionTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (int part = 0; part < threads_; ++part) {
-    nn::stackFrames(frames.data(), pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
+    nn::stackFrames(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
   }
 }
 
 template <class T>
-void VisionTrunk<T>::predictOnAllThreads(const Frames& frames, const float* goal, float* features) {
+void VisionTrunk<T>::predictOnAllThreads(const core::FrameStack& frames, const float* goal, float* features) {
   Scratch& scratch = scratch_[0];
   stackOnAllThreads(frames, scratch.input.data());
   T* in = scratch.input.data();

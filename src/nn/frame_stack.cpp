@@ -22,9 +22,9 @@ void store(int difference, bfloat16& number) {
 }
 
 template <class T, int kCopied>
-inline void interleavePixel(const T (&rows)[kStackedFrames][3 * kRun + 1], int p, T* x) {
+inline void interleavePixel(const T (&rows)[core::kStackedFrames][3 * kRun + 1], int p, T* x) {
   T* pixel = x + p * kImageChannels;
-  for (int f = 0; f < kStackedFrames; ++f) {
+  for (int f = 0; f < core::kStackedFrames; ++f) {
     std::memcpy(static_cast<void*>(pixel + 3 * f), rows[f] + 3 * p, kCopied * sizeof(T));
   }
 }
@@ -32,7 +32,7 @@ inline void interleavePixel(const T (&rows)[kStackedFrames][3 * kRun + 1], int p
 /// Lays `count` pixels of three frames, (count, 3) each, side by side. Four numbers are copied at a time, one register;
 /// the fourth is overwritten by what comes next, so the last pixel is copied exactly.
 template <class T>
-void interleave(const T (&rows)[kStackedFrames][3 * kRun + 1], int count, T* x) {
+void interleave(const T (&rows)[core::kStackedFrames][3 * kRun + 1], int count, T* x) {
   for (int p = 0; p < count - 1; ++p) interleavePixel<T, 4>(rows, p, x);
   interleavePixel<T, 3>(rows, count - 1, x);
 }
@@ -40,21 +40,21 @@ void interleave(const T (&rows)[kStackedFrames][3 * kRun + 1], int count, T* x) 
 }  // namespace
 
 template <class T>
-void stackFrames(const std::uint8_t* const frames[kStackedFrames], int first_pixel, int last_pixel, T* x) {
-  T rows[kStackedFrames][3 * kRun + 1] = {};
+void stackFrames(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) {
+  T rows[core::kStackedFrames][3 * kRun + 1] = {};
   for (int start = first_pixel; start < last_pixel; start += kRun) {
     const int count = std::min(kRun, last_pixel - start);
-    const std::uint8_t* bytes[kStackedFrames];
-    for (int f = 0; f < kStackedFrames; ++f) bytes[f] = frames[f] != nullptr ? frames[f] + 3 * start : kBlack;
+    const std::uint8_t* bytes[core::kStackedFrames];
+    for (int f = 0; f < core::kStackedFrames; ++f) bytes[f] = frames[f] != nullptr ? frames[f] + 3 * start : kBlack;
     for (int i = 0; i < 3 * count; ++i) store(bytes[0][i] - kMiddleByte, rows[0][i]);
-    for (int f = 1; f < kStackedFrames; ++f) {
+    for (int f = 1; f < core::kStackedFrames; ++f) {
       for (int i = 0; i < 3 * count; ++i) store(bytes[f - 1][i] - bytes[f][i], rows[f][i]);
     }
     interleave(rows, count, x + std::size_t(start) * kImageChannels);
   }
 }
 
-template void stackFrames<float>(const std::uint8_t* const[kStackedFrames], int, int, float*);
-template void stackFrames<bfloat16>(const std::uint8_t* const[kStackedFrames], int, int, bfloat16*);
+template void stackFrames<float>(const core::FrameStack&, int, int, float*);
+template void stackFrames<bfloat16>(const core::FrameStack&, int, int, bfloat16*);
 
 }  // namespace early_fusion::nn

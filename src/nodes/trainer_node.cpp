@@ -3,8 +3,13 @@
 #include <ros/init.h>
 
 #include "early_fusion/ros/run_node.h"
+#include "early_fusion/ros/session_start.h"
 
 int main(int argc, char** argv) {
   namespace nodes = early_fusion::nodes;
-  return nodes::runNode<nodes::TrainerNode>(argc, argv, "trainer", [] { ros::spin(); });
+  return nodes::runNode(argc, argv, "trainer", nodes::TrainerNode::Options().options(), [] {
+    const nodes::TrainerNode::Options options = nodes::loadTrainerOptions();
+    nodes::TrainerNode node(options, nodes::startSession(options.session));
+    ros::spin();
+  });
 }

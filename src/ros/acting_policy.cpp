@@ -32,7 +32,7 @@ double ActingPolicy::horizontalFovDeg() const {
 model::Observation ActingPolicy::observation() const {
   model::Observation observation;
   observation.request = &request_;
-  for (std::size_t age = 0; age < frames_.size(); ++age) observation.frames[age] = frames_[age].rgb.data();
+  observation.frames = core::frameStack(frames_.size() - 1, [this](std::size_t at) { return frames_[at].rgb.data(); });
   return observation;
 }
 
@@ -40,12 +40,12 @@ void ActingPolicy::remember(const core::Image& frame, std::uint64_t episode, std
   const bool again = episode == episode_ && step == step_ && !frames_.empty();
   const bool follows = episode == episode_ && step == step_ + 1;
   if (again) {
-    frames_.front() = frame;
+    frames_.back() = frame;
   } else {
     if (!follows || step == 0) frames_.clear();
-    frames_.push_front(frame);
+    frames_.push_back(frame);
   }
-  if (frames_.size() > model::kHistory) frames_.pop_back();
+  if (frames_.size() > core::kStackedFrames) frames_.pop_front();
   episode_ = episode;
   step_ = step;
 }
@@ -65,7 +65,7 @@ Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::s
 
 core::Image ActingPolicy::lastImageWithSaliency(int grid) {
   assert(!frames_.empty());
-  core::Image image = frames_.front();
+  core::Image image = frames_.back();
   model::tint(image, model::occlusionSaliency(*policy_, observation(), grid));
   return image;
 }

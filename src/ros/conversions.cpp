@@ -22,6 +22,10 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
   return message;
 }
 
+sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
+  return {sim::withUpTo(goal.most_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
+}
+
 sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header) {
   const double focal_length = image_size / 2.0 / std::tan(horizontal_fov_deg * M_PI / 360.0);
   const double centre = image_size / 2.0 - 0.5;
@@ -46,26 +50,26 @@ sensor_msgs::JointState jointStateMessage(const sim::CameraRig& rig, sim::Orient
   return message;
 }
 
-Request requestMessage(const sim::Episode& episode, const EpisodeKey& key, const core::Vocabulary& vocabulary,
+Request requestMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                        const std_msgs::Header& header) {
   Request message;
   message.header = header;
-  message.episode = key.episode;
+  message.episode = key.number;
   message.step = episode.state().step;
   message.items = vocabulary.names(episode.state().request);
   return message;
 }
 
-Scene sceneMessage(const sim::Episode& episode, const EpisodeKey& key, int steps, const core::Vocabulary& vocabulary,
+Scene sceneMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                    const std::string& previous_action, const std_msgs::Header& header) {
   const sim::EpisodeState& state = episode.state();
   Scene message;
   message.header = header;
-  message.task = key.task;
+  message.task = key.task.name;
   message.seed = key.seed;
-  message.episode = key.episode;
+  message.episode = key.number;
   message.step = state.step;
-  message.steps = steps;
+  message.steps = key.task.steps;
   for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
     const sim::Instance& instance = episode.setup().instances[i];
     Instance item;
@@ -83,13 +87,14 @@ Scene sceneMessage(const sim::Episode& episode, const EpisodeKey& key, int steps
   return message;
 }
 
-EpisodeResult episodeResultMessage(const sim::Episode& episode, const EpisodeKey& key, const std_msgs::Header& header) {
+EpisodeResult episodeResultMessage(const sim::Episode& episode, const sim::EpisodeKey& key,
+                                   const std_msgs::Header& header) {
   const sim::Score score = episode.score();
   EpisodeResult message;
   message.header = header;
-  message.task = key.task;
+  message.task = key.task.name;
   message.seed = key.seed;
-  message.episode = key.episode;
+  message.episode = key.number;
   message.steps = episode.state().step;
   message.requested = episode.setup().request.size();
   message.collected = episode.collectedCount();

@@ -41,9 +41,8 @@ EvaluatorNode::EvaluatorNode(const Options& options)
         status.add("waits for", client_.waitsFor());
         status.addf("episodes", "%zu of %d", evaluation_.outcomes.size(), options_.episodes);
       }),
-      client_(node_, *world_, options.stall_sec, health_) {
-  evaluation_.task = sim::loadTask(options_.task).name;
-  evaluation_.seed = options_.seed;
+      client_(node_, *world_, options.stall_sec, health_),
+      evaluation_("", sim::loadTask(options.task).name, options.seed) {  // the policy's name comes with its status
   start_timer_ = node_.createWallTimer(::ros::WallDuration(kPolicyPollSec),
                                        [this](const ::ros::WallTimerEvent&) { startWhenPolicyIsThere(); });
 }
@@ -63,15 +62,15 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   }
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
-  plan.task = options_.task;
-  plan.seed = options_.seed;
-  plan.episodes = static_cast<std::uint32_t>(options_.episodes);
+  plan.goal.task = options_.task;
+  plan.goal.seed = options_.seed;
+  plan.goal.episodes = static_cast<std::uint32_t>(options_.episodes);
   plan.weights = policy->weights;
   plan.mode = policy->mode;
   ROS_INFO("scoring weights '%s' on %d episodes of task %s", plan.weights.c_str(), options_.episodes,
            evaluation_.task.c_str());
   const auto keep = [this](const learning::Trajectory& trajectory) {
-    evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+    evaluation_.add(trajectory);
     ROS_INFO_THROTTLE(10, "%zu/%d episodes", evaluation_.outcomes.size(), options_.episodes);
   };
   client_.start(plan, keep, [this] { finish(); });

@@ -37,9 +37,9 @@ std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> privateParameters(const core::OptionSet& options) {
+core::GivenOptions privateParameters(const core::OptionSet& options) {
   const std::string node = ::ros::this_node::getName();
-  std::vector<std::pair<std::string, std::string>> parameters;
+  core::GivenOptions parameters;
   XmlRpc::XmlRpcValue values;
   if (!::ros::param::get(node, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return parameters;
   for (auto& [name, value] : values) {
@@ -50,8 +50,8 @@ std::vector<std::pair<std::string, std::string>> privateParameters(const core::O
   return parameters;
 }
 
-void loadParameters(core::OptionSet& options) {
-  for (const auto& [name, text] : privateParameters(options)) {
+void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters) {
+  for (const auto& [name, text] : parameters) {
     options.set(name, text, ::ros::this_node::getName() + "/" + name);
   }
 }

@@ -9,9 +9,9 @@ namespace early_fusion::nodes {
 
 namespace {
 
-constexpr int kStepQueue = 512;  // some ten episodes: the simulator does not wait for who only listens
+constexpr int kStepQueue = 512;  // some ten episodes: the simulator waits for the policy alone
 constexpr double kSupervisionSec = 0.1;
-constexpr double kPatienceSec = 2.0;   // before people are told what is being waited for
+constexpr double kPatienceSec = 2.0;   // before it is logged what is being waited for
 constexpr double kStragglerSec = 1.0;  // after a goal's end, how long its last messages may take
 
 }  // namespace
@@ -56,10 +56,10 @@ std::string RolloutClient::obstacle() const {
   }
   const bool right_policy = policy_status_ && policy_status_->weights == plan_.weights &&
                             policy_status_->mode == plan_.mode &&
-                            (plan_.mode == "argmax" || policy_status_->seed == plan_.seed);
+                            (plan_.mode == "argmax" || policy_status_->seed == plan_.goal.seed);
   if (!right_policy || action_subscriber_.getSubscriber().getNumPublishers() == 0) {
     return "a policy that acts with weights '" + plan_.weights + "' (" + plan_.mode + ", seed " +
-           std::to_string(plan_.seed) + ") and publishes " + action_subscriber_.getTopic();
+           std::to_string(plan_.goal.seed) + ") and publishes " + action_subscriber_.getTopic();
   }
   return "";
 }
@@ -80,10 +80,7 @@ void RolloutClient::askWhenReady() {
     return;
   }
   const auto [first, last] = recorder_->missing();
-  RunEpisodesGoal goal;
-  goal.task = plan_.task;
-  goal.most_instances = static_cast<std::uint32_t>(plan_.most_instances);
-  goal.seed = plan_.seed;
+  RunEpisodesGoal goal = plan_.goal;
   goal.first_episode = first;
   goal.episodes = static_cast<std::uint32_t>(last - first);
   goal_done_ = false;
@@ -131,9 +128,9 @@ void RolloutClient::publishExpert(const learning::TrajectoryStep& step, const Sc
 void RolloutClient::onGoalDone(const actionlib::SimpleClientGoalState& state) {
   if (phase_ != Phase::kPlaying) return;
   if (state == actionlib::SimpleClientGoalState::ABORTED || state == actionlib::SimpleClientGoalState::REJECTED) {
-    throw core::Error("the simulator cannot play task '" + plan_.task + "': " + state.getText());
+    throw core::Error("the simulator cannot play task '" + plan_.goal.task + "': " + state.getText());
   }
-  // Who has another goal played instead gets his turn: until the stall.
+  // A preempted goal is sent again, but only after the stall: the goal that replaced it may be played meanwhile.
   goal_done_ = state != actionlib::SimpleClientGoalState::PREEMPTED;
   last_news_ = ::ros::WallTime::now();
   finishWhenDone();

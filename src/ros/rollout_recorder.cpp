@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/ros/conversions.h"
 
 namespace early_fusion::nodes {
@@ -23,28 +23,25 @@ bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
 }  // namespace
 
 RolloutRecorder::RolloutRecorder(const sim::World& world, const RolloutPlan& plan)
-    : world_(world),
-      plan_(plan),
-      task_(sim::withUpTo(plan.most_instances, sim::loadTask(plan.task))),
-      next_(plan.first_episode) {}
+    : world_(world), plan_(plan), first_(firstEpisode(plan.goal)), next_(first_.number) {}
 
 bool RolloutRecorder::wants(const Scene& scene) const {
-  return scene.task == task_.name && scene.seed == plan_.seed && scene.episode >= next_ && scene.episode < end() &&
-         finished_.count(scene.episode) == 0;
+  return scene.task == first_.task.name && scene.seed == first_.seed && scene.episode >= next_ &&
+         scene.episode < end() && finished_.count(scene.episode) == 0;
 }
 
 void RolloutRecorder::begin(const Scene& scene) {
   const SceneState start = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
-  sim::Episode episode(world_, task_, sim::sampleEpisode(world_, task_, plan_.seed, scene.episode));
+  const sim::EpisodeKey key{first_.task, first_.seed, scene.episode};
+  sim::Episode episode(world_, key);
   if (start.instances != episode.setup().instances || !sameState(start.state, episode.state())) {
     throw core::Error(
-        stepName(scene) + ": is not the episode of task '" + task_.name + "', seed " + std::to_string(plan_.seed) +
-        ", with up to " + std::to_string(task_.mostInstances()) +
+        stepName(scene) + ": is not the episode of task '" + key.task.name + "', seed " + std::to_string(key.seed) +
+        ", with up to " + std::to_string(key.task.mostInstances()) +
         " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
-  learning::TrajectoryRecorder recorder(plan_.seed, scene.episode, episode.setup().instances, episode.sharedCone(),
-                                        plan_.teacher);
-  recording_.emplace(Recording{scene.episode, std::move(episode), std::move(recorder), ::ros::Time(), ""});
+  learning::TrajectoryRecorder recorder(key, episode, plan_.training_expert);
+  recording_.emplace(Recording{key, std::move(episode), std::move(recorder), ::ros::Time(), ""});
 }
 
 void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& request, const Scene& scene,
@@ -60,13 +57,13 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
     throw core::Error(stepName(scene) + ": was decided by weights '" + action.weights + "' (" + action.mode +
                       "); expected '" + plan_.weights + "' (" + plan_.mode + ")");
   }
-  const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, model::kHistory);
+  const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, core::kStackedFrames);
   if (action.frames != frames) {
     throw core::Error(stepName(scene) + ": was decided from " + std::to_string(action.frames) + " images, not " +
                       std::to_string(frames) + ": the policy has not seen the episode from its beginning");
   }
   const SceneState now = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
-  if (scene.steps != static_cast<std::uint32_t>(task_.steps) || request.items != scene.request ||
+  if (scene.steps != static_cast<std::uint32_t>(first_.task.steps) || request.items != scene.request ||
       scene.previous_action != recording_->previous_action || !sameState(now.state, recording_->episode.state())) {
     throw core::Error(stepName(scene) + ": does not follow from the step before it (step " +
                       std::to_string(recording_->episode.state().step - 1) + " was recorded last)");
@@ -76,12 +73,12 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
 const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& image, const Request& request,
                                                      const Scene& scene, const Action& action) {
   if (!wants(scene)) return nullptr;
-  // What was published again, for a policy that had missed it.
+  // A step that was published again, for a policy that had missed it.
   if (recording_ && recording_->stamp == scene.header.stamp) return nullptr;
   try {
     if (scene.step == 0) begin(scene);
     // The rest of an episode that was dropped.
-    if (!recording_ || recording_->number != scene.episode) return nullptr;
+    if (!recording_ || recording_->key.number != scene.episode) return nullptr;
     check(image, request, scene, action);
     const core::Action taken = core::actionFromName(action.name);
     const learning::TrajectoryStep& step = recording_->recorder.record(recording_->episode.state(), image.data);
@@ -91,7 +88,7 @@ const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& i
     recording_->previous_action = action.name;
     if (!recording_->episode.finished()) return &step;
     const sim::Score score = recording_->episode.score();
-    learning::Trajectory& whole = finished_[recording_->number] = recording_->recorder.finish(score);
+    learning::Trajectory& whole = finished_[recording_->key.number] = recording_->recorder.finish(score);
     recording_.reset();
     return &whole.steps.back();
   } catch (const core::Error&) {

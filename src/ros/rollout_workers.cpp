@@ -29,12 +29,12 @@ void RolloutWorkers::start(const RolloutPlan& plan, std::function<void(learning:
   on_trajectory_ = std::move(on_trajectory);
   on_done_ = std::move(on_done);
   early_.clear();
-  next_ = plan.first_episode;
-  playing_ = std::min<int>(workers_.size(), plan.episodes);
+  next_ = plan.goal.first_episode;
+  playing_ = std::min<int>(workers_.size(), plan.goal.episodes);
   RolloutPlan share = plan;
   for (int i = 0; i < playing_; ++i) {
     // Whole numbers that add up to all episodes and differ by at most one.
-    share.episodes = (plan.episodes + playing_ - 1 - i) / playing_;
+    share.goal.episodes = (plan.goal.episodes + playing_ - 1 - i) / playing_;
     workers_[i]->client.start(
         share, [this](learning::Trajectory trajectory) { onTrajectory(std::move(trajectory)); },
         [this] {
@@ -42,7 +42,7 @@ void RolloutWorkers::start(const RolloutPlan& plan, std::function<void(learning:
           const std::function<void()> done = std::move(on_done_);  // it may start the next plan
           done();
         });
-    share.first_episode += share.episodes;
+    share.goal.first_episode += share.goal.episodes;
   }
 }
 
@@ -58,8 +58,8 @@ void RolloutWorkers::onTrajectory(learning::Trajectory trajectory) {
 }
 
 double RolloutWorkers::done() const {
-  if (plan_.episodes == 0) return 0;
-  return static_cast<double>(next_ - plan_.first_episode + early_.size()) / plan_.episodes;
+  if (plan_.goal.episodes == 0) return 0;
+  return static_cast<double>(next_ - plan_.goal.first_episode + early_.size()) / plan_.goal.episodes;
 }
 
 std::string RolloutWorkers::waitsFor() const {

@@ -9,7 +9,6 @@
 #include <exception>
 #include <iostream>
 
-#include "early_fusion/ros/parameters.h"
 #include "early_fusion/ros/topics.h"
 
 namespace early_fusion::nodes {
@@ -35,7 +34,8 @@ void reportFailure(const std::string& reason) {
 
 }  // namespace
 
-int runNode(int argc, char** argv, const std::string& name, core::OptionSet options, const std::function<void()>& run) {
+int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
+            const std::function<void()>& run) {
   if (wantsHelp(argc, argv)) {
     std::cout << name << "_node [_parameter:=value ...] [topic:=other_topic ...]\nPrivate parameters:\n"
               << describeParameters(options);
@@ -44,7 +44,6 @@ int runNode(int argc, char** argv, const std::string& name, core::OptionSet opti
   try {
     ::ros::init(argc, argv, name);
     ::ros::start();  // or else the console would end with the node's last handle, and with it the reason of a failure
-    loadParameters(options);
     run();
     return 0;
   } catch (const std::exception& error) {

@@ -24,8 +24,7 @@ core::OptionSet SimulatorNode::Options::options() {
 SimulatorNode::SimulatorNode(const Options& options)
     : options_(options),
       world_(sim::loadWorld(options.world)),
-      task_(sim::loadTask(options.task)),
-      seed_(options.seed),
+      free_run_{sim::loadTask(options.task), options.seed, 0},
       health_(
           [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); }),
       publisher_(node_, world_, options.marker_rate_hz),
@@ -51,8 +50,7 @@ void SimulatorNode::onGoal() {
   goal_.end = goal->first_episode + goal->episodes;
   try {
     if (goal->episodes == 0) throw core::Error("episodes is 0; ask for at least 1");
-    const sim::Task task = sim::withUpTo(goal->most_instances, sim::loadTask(goal->task));
-    begin(Driver::kGoal, task, goal->seed, goal->first_episode);
+    begin(Driver::kGoal, firstEpisode(*goal));
   } catch (const core::Error& error) {
     stop();
     health_.drop("goal", error.what());
@@ -65,14 +63,18 @@ void SimulatorNode::onPreempt() {
   goal_server_.setPreempted(RunEpisodesResult(), "another goal, or a cancellation, came in between");
 }
 
-void SimulatorNode::begin(Driver driver, const sim::Task& task, std::uint64_t seed, std::uint64_t episode) {
-  sim::Episode played(*world_, task, sim::sampleEpisode(*world_, task, seed, episode));
+void SimulatorNode::begin(Driver driver, const sim::EpisodeKey& key) {
+  Play play{key, sim::Episode(*world_, key), ""};
   driver_ = driver;
-  play_.emplace(Play{{task.name, seed, episode}, task, std::move(played), ""});
+  play_ = std::move(play);
   publishWhenDue();
 }
 
-void SimulatorNode::freeRun() { begin(Driver::kFreeRun, task_, seed_, free_run_episode_++); }
+void SimulatorNode::freeRun() {
+  const sim::EpisodeKey key = free_run_;
+  ++free_run_.number;
+  begin(Driver::kFreeRun, key);
+}
 
 void SimulatorNode::publishWhenDue() {
   awaited_ = ::ros::Time();
@@ -85,7 +87,7 @@ void SimulatorNode::publishWhenDue() {
 }
 
 void SimulatorNode::publishStep() {
-  awaited_ = publisher_.publish(play_->episode, play_->key, play_->task.steps, play_->previous_action);
+  awaited_ = publisher_.publish(play_->episode, play_->key, play_->previous_action);
   published_ = ::ros::WallTime::now();
   health_.count("steps");
 }
@@ -94,8 +96,7 @@ void SimulatorNode::onAction(const Action& message) {
   const std::string what = "action " + message.name + " for episode " + std::to_string(message.episode) + ", step " +
                            std::to_string(message.step) + " while waiting for " + whatIsAwaited();
   if (awaited_.isZero()) return health_.drop("unexpected action", what);
-  if (message.episode != play_->key.episode ||
-      message.step != static_cast<std::uint32_t>(play_->episode.state().step)) {
+  if (message.episode != play_->key.number || message.step != static_cast<std::uint32_t>(play_->episode.state().step)) {
     return health_.drop("stale action", what);
   }
   if (message.header.stamp != awaited_) return health_.drop("action for another image", what + " (stamps differ)");
@@ -120,16 +121,15 @@ void SimulatorNode::endEpisode() {
 }
 
 void SimulatorNode::continueGoal() {
-  const EpisodeKey key = play_->key;
   RunEpisodesFeedback feedback;
-  feedback.result = episodeResultMessage(play_->episode, key, std_msgs::Header());
+  feedback.result = episodeResultMessage(play_->episode, play_->key, std_msgs::Header());
   goal_server_.publishFeedback(feedback);
   ++goal_.played;
   goal_.f1_sum += feedback.result.f1;
-  if (key.episode + 1 < goal_.end) {
+  sim::EpisodeKey next = play_->key;
+  if (++next.number < goal_.end) {
     try {
-      const sim::Task task = play_->task;
-      return begin(Driver::kGoal, task, key.seed, key.episode + 1);
+      return begin(Driver::kGoal, next);
     } catch (const core::Error& error) {
       stop();
       health_.drop("goal", error.what());
@@ -153,13 +153,13 @@ void SimulatorNode::stop() {
 bool SimulatorNode::onReset(Reset::Request& request, Reset::Response& response) {
   try {
     if (driver_ == Driver::kGoal) throw core::Error("a RunEpisodes goal is being played; cancel it first");
-    const sim::Task task = request.task.empty() ? task_ : sim::loadTask(request.task);
-    begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, task, request.seed, request.episode);
-    task_ = task;
-    seed_ = request.seed;
-    free_run_episode_ = request.episode + 1;
-    response.message = "episode " + std::to_string(request.episode) + " of task " + task_.name + ", seed " +
-                       std::to_string(request.seed);
+    sim::EpisodeKey key{free_run_.task, request.seed, request.episode};
+    if (!request.task.empty()) key.task = sim::loadTask(request.task);
+    begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, key);
+    response.message =
+        "episode " + std::to_string(key.number) + " of task " + key.task.name + ", seed " + std::to_string(key.seed);
+    ++key.number;
+    free_run_ = key;
     response.success = true;
   } catch (const core::Error& error) {
     response.message = error.what();
@@ -203,7 +203,7 @@ std::string SimulatorNode::whatIsAwaited() const {
   if (!play_) return "a goal";
   char stamp[40];
   std::snprintf(stamp, sizeof(stamp), "%u.%09u", awaited_.sec, awaited_.nsec);
-  return "episode " + std::to_string(play_->key.episode) + ", step " + std::to_string(play_->episode.state().step) +
+  return "episode " + std::to_string(play_->key.number) + ", step " + std::to_string(play_->episode.state().step) +
          (awaited_.isZero() ? ", not published yet" : std::string(", stamp ") + stamp);
 }
 

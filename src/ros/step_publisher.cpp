@@ -36,7 +36,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim:
   return last_stamp_;
 }
 
-::ros::Time StepPublisher::publish(const sim::Episode& episode, const EpisodeKey& key, int steps,
+::ros::Time StepPublisher::publish(const sim::Episode& episode, const sim::EpisodeKey& key,
                                    const std::string& previous_action) {
   const core::Vocabulary& vocabulary = world_->objects.vocabulary();
   std_msgs::Header camera_header;
@@ -54,7 +54,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim:
   camera_info_ = boost::make_shared<sensor_msgs::CameraInfo>(
       cameraInfoMessage(world_->options.image_size, world_->options.horizontal_fov_deg, camera_header));
   request_ = boost::make_shared<Request>(requestMessage(episode, key, vocabulary, camera_header));
-  scene_ = boost::make_shared<Scene>(sceneMessage(episode, key, steps, vocabulary, previous_action, world_header));
+  scene_ = boost::make_shared<Scene>(sceneMessage(episode, key, vocabulary, previous_action, world_header));
   joint_publisher_.publish(jointStateMessage(world_->rig, orientation_, camera_header));
   publishAgain();
   publishMarkers(episode, camera_header.stamp);
@@ -68,7 +68,7 @@ void StepPublisher::publishAgain() {
   camera_publisher_.publish(image_, camera_info_);
 }
 
-void StepPublisher::publishResult(const sim::Episode& episode, const EpisodeKey& key) {
+void StepPublisher::publishResult(const sim::Episode& episode, const sim::EpisodeKey& key) {
   std_msgs::Header header;
   header.stamp = nextStamp();
   episode_publisher_.publish(episodeResultMessage(episode, key, header));

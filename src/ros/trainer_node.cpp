@@ -1,12 +1,9 @@
 #include "early_fusion/ros/trainer_node.h"
 
 #include <early_fusion/Progress.h>
-#include <ros/param.h>
-#include <ros/this_node.h>
 
 #include <algorithm>
 
-#include "early_fusion/ros/parameters.h"
 #include "early_fusion/ros/topics.h"
 
 namespace early_fusion::nodes {
@@ -17,21 +14,6 @@ constexpr double kRoundPollSec = 0.01;
 
 /// Thrown through a round of training to end it.
 struct Stopped {};
-
-std::unique_ptr<learning::TrainingSession> makeSession() {
-  learning::SessionOptions known;
-  const core::OptionSet names = known.options();
-  std::vector<std::pair<std::string, std::string>> given;
-  for (auto& parameter : privateParameters(names)) {
-    if (names.has(parameter.first)) given.push_back(std::move(parameter));
-  }
-  learning::SessionOptions options = learning::resolveSessionOptions(given, ::ros::this_node::getName());
-  bool started = false;
-  if (::ros::param::get(kStartedParameter, started) && started) options.resume = true;
-  auto session = std::make_unique<learning::TrainingSession>(options, sim::loadWorld(options.world));
-  if (::ros::param::has(kStartedParameter)) ::ros::param::set(kStartedParameter, true);
-  return session;
-}
 
 }  // namespace
 
@@ -46,16 +28,16 @@ core::OptionSet TrainerNode::Options::options() {
   return set;
 }
 
-TrainerNode::TrainerNode(const Options& options)
-    : session_(makeSession()),
+TrainerNode::TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session)
+    : session_(std::move(session)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
       workers_(options.workers, session_->world(), options.stall_sec, health_),
       progress_publisher_(node_.advertise<Progress>(kProgressTopic, 4, true)) {
-  const learning::SessionOptions& session = session_->options();
+  const learning::SessionOptions& settings = session_->options();
   ROS_INFO("%s %s (%ld parameters) on task %s, preset %s, seed %lu, in %s",
-           session_->resumed() ? "going on with" : "training", session.policy.kind.c_str(),
-           static_cast<long>(session_->trainer().policy().parameters().values().size()), session.task.c_str(),
-           session.preset.c_str(), static_cast<unsigned long>(session.seed), session.output.c_str());
+           session_->resumed() ? "going on with" : "training", settings.policy.kind.c_str(),
+           static_cast<long>(session_->trainer().policy().parameters().values().size()), settings.task.c_str(),
+           settings.preset.c_str(), static_cast<unsigned long>(settings.seed), settings.output.c_str());
   progress_timer_ = node_.createWallTimer(::ros::WallDuration(options.progress_period_sec),
                                           [this](const ::ros::WallTimerEvent&) { publishProgress(); });
   round_timer_ = node_.createWallTimer(
@@ -84,20 +66,20 @@ void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
 
 void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory,
                        std::function<void()> on_done) {
-  publishWeights(plan.mode, plan.seed);
-  plan.task = session_->options().task;
+  publishWeights(plan.mode, plan.goal.seed);
+  plan.goal.task = session_->options().task;
   plan.weights = weights_id_;
-  plan.teacher = learning::teacherFromName(session_->options().training.teacher);
+  plan.training_expert = session_->trainingExpert();
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
 void TrainerNode::rollOut() {
   const learning::Trainer& trainer = session_->trainer();
   RolloutPlan plan;
-  plan.seed = session_->options().seed;
-  plan.first_episode = trainer.trajectoriesSeen();
-  plan.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
-  plan.most_instances = trainer.options().most_instances;
+  plan.goal.seed = session_->options().seed;
+  plan.goal.first_episode = trainer.trajectoriesSeen();
+  plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
+  plan.goal.most_instances = trainer.options().most_instances;
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
@@ -131,21 +113,18 @@ void TrainerNode::onRoundTimer() {
 
 void TrainerNode::evaluate() {
   const int episodes = session_->options().evaluation_episodes;
-  evaluation_ = learning::Evaluation();
-  evaluation_.policy = session_->weightsPath();
-  evaluation_.task = session_->task().name;
-  evaluation_.seed = learning::kHeldOutSeed;
+  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task().name, learning::kHeldOutSeed);
   if (episodes == 0) {
     publishWeights("argmax", learning::kHeldOutSeed);
     return finish();
   }
   const auto keep = [this, episodes](const learning::Trajectory& trajectory) {
-    evaluation_.outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
+    evaluation_.add(trajectory);
     ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
   RolloutPlan plan;
-  plan.seed = learning::kHeldOutSeed;
-  plan.episodes = static_cast<std::uint32_t>(episodes);
+  plan.goal.seed = learning::kHeldOutSeed;
+  plan.goal.episodes = static_cast<std::uint32_t>(episodes);
   play(plan, keep, [this] { finish(); });
   enterStage("evaluation");
 }

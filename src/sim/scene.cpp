@@ -125,9 +125,9 @@ EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& r
   return setup;
 }
 
-EpisodeSetup sampleEpisode(const World& world, const Task& task, std::uint64_t seed, std::uint64_t episode) {
-  core::Random random(seed, {core::kEpisodeStream, episode});
-  return sampleEpisode(world, task, random);
+EpisodeSetup sampleEpisode(const World& world, const EpisodeKey& key) {
+  core::Random random(key.seed, {core::kEpisodeStream, key.number});
+  return sampleEpisode(world, key.task, random);
 }
 
 }  // namespace early_fusion::sim

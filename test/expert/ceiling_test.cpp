@@ -52,7 +52,7 @@ void countInstances(const sim::World& world, const sim::Episode& episode, Statis
 Statistics play(const sim::World& world, const sim::Task& task) {
   Statistics statistics;
   for (int number = 0; number < kEpisodes; ++number) {
-    sim::Episode episode(world, task, sim::sampleEpisode(world, task, kSeed, number));
+    sim::Episode episode(world, {task, kSeed, number});
     countInstances(world, episode, statistics);
     while (!episode.finished()) {
       const sim::EpisodeState& state = episode.state();

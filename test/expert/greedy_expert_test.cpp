@@ -302,7 +302,7 @@ TEST(GreedyExpert, CollectsEverythingRequestedInAnEpisode) {
   task.requested = 3;
   task.steps = 300;
   for (std::uint64_t number = 0; number < 30; ++number) {
-    sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 6, number));
+    sim::Episode episode(world(), {task, 6, number});
     while (!episode.finished()) {
       const Decision decision = decide(episode);
       EXPECT_EQ(decision.action == Action::kIdle, episode.state().request.empty());

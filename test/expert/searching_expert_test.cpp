@@ -125,7 +125,7 @@ TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
   const sim::Task task = sim::loadTask("hard");
   std::map<bool, int> cases;
   for (int number = 0; number < 40; ++number) {
-    const sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 3, number));
+    const sim::Episode episode(world(), {task, 3, number});
     const std::vector<sim::Instance>& instances = episode.setup().instances;
     const sim::EpisodeState& state = episode.state();
     // Of an object whose type is there once, the expert must go for it if it is in view and must not know of it if not.
@@ -168,7 +168,7 @@ TEST(SearchingExpert, InViewMeansThatItsMiddleOrMoreIsInThePicture) {
   const sim::Task task = sim::loadTask("hard");
   const double half_fov = 0.5 * world().options.horizontal_fov_deg * M_PI / 180;
   for (int number = 0; number < 40; ++number) {
-    const sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 4, number));
+    const sim::Episode episode(world(), {task, 4, number});
     const Orientation from = episode.state().orientation;
     for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
       const sim::Instance& instance = episode.setup().instances[i];
@@ -194,7 +194,7 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
   constexpr int kEpisodes = 500;
   double f1 = 0;
   for (int number = 0; number < kEpisodes; ++number) {
-    sim::Episode episode(world(), task, sim::sampleEpisode(world(), task, 5, number));
+    sim::Episode episode(world(), {task, 5, number});
     std::vector<int> pans;
     while (!episode.finished()) {
       const sim::EpisodeState state = episode.state();

@@ -23,7 +23,7 @@ TEST(Agent, TheExpertBeatsChanceAndIdlenessByFar) {
 
 TEST(Agent, TheRandomAgentDrawsEveryActionFromSeedEpisodeAndStep) {
   const sim::Task task = sim::loadTask("simple");
-  const sim::Episode episode(shippedWorld(), task, sim::sampleEpisode(shippedWorld(), task, 1, 0));
+  const sim::Episode episode(shippedWorld(), {task, 1, 0});
   std::vector<Situation> situations;
   for (std::uint64_t i = 0; i < 100; ++i) situations.push_back({i, &episode, {}});
   std::vector<core::Action> actions(100), again(100), other(100);
@@ -42,7 +42,7 @@ TEST(Agent, APolicySeesFramesAndChoosesTheLikeliestAction) {
   const auto agent = makePolicyAgent(*policy, model::ActionChoice::kArgmax, 0);
   EXPECT_TRUE(agent->needsFrames());
   const sim::Task task = sim::loadTask("simple");
-  const sim::Episode episode(shippedWorld(), task, sim::sampleEpisode(shippedWorld(), task, 1, 0));
+  const sim::Episode episode(shippedWorld(), {task, 1, 0});
   const std::vector<std::uint8_t> frame(3 * 128 * 128, 100);
   Situation situation{0, &episode, {}};
   situation.observation.frames[0] = frame.data();

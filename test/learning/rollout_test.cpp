@@ -32,10 +32,10 @@ void expectSame(const Trajectory& a, const Trajectory& b) {
     EXPECT_EQ(a.steps[s].action, b.steps[s].action);
     EXPECT_EQ(a.steps[s].request, b.steps[s].request);
     EXPECT_EQ(a.steps[s].label.action, b.steps[s].label.action);
-    ASSERT_EQ(a.steps[s].lessons.size(), b.steps[s].lessons.size());
-    for (std::size_t i = 0; i < a.steps[s].lessons.size(); ++i) {
-      EXPECT_EQ(a.steps[s].lessons[i].request, b.steps[s].lessons[i].request);
-      EXPECT_EQ(a.steps[s].lessons[i].label.action, b.steps[s].lessons[i].label.action);
+    ASSERT_EQ(a.steps[s].labelled_requests.size(), b.steps[s].labelled_requests.size());
+    for (std::size_t i = 0; i < a.steps[s].labelled_requests.size(); ++i) {
+      EXPECT_EQ(a.steps[s].labelled_requests[i].request, b.steps[s].labelled_requests[i].request);
+      EXPECT_EQ(a.steps[s].labelled_requests[i].label.action, b.steps[s].labelled_requests[i].label.action);
     }
   }
 }
@@ -64,14 +64,12 @@ TEST(Rollout, TrajectoriesComeInOrderAndComplete) {
 
 TEST(Rollout, AReplayOfTheActionsGivesTheSameTrajectories) {
   const std::vector<Trajectory> first = rollOut(3, 4, *makeRandomAgent(5));
-  std::vector<std::int64_t> episodes;
-  std::vector<std::vector<core::Action>> actions;
+  std::vector<EpisodeActions> episodes;
   for (const Trajectory& trajectory : first) {
-    episodes.push_back(static_cast<std::int64_t>(trajectory.episode));
-    actions.emplace_back();
-    for (const TrajectoryStep& step : trajectory.steps) actions.back().push_back(step.action);
+    episodes.push_back({trajectory.episode, {}});
+    for (const TrajectoryStep& step : trajectory.steps) episodes.back().actions.push_back(step.action);
   }
-  const std::vector<Trajectory> again = rollOut(3, 4, *makeReplayAgent(episodes, actions));
+  const std::vector<Trajectory> again = rollOut(3, 4, *makeReplayAgent(episodes));
   for (int i = 0; i < 4; ++i) expectSame(first[i], again[i]);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,11 +32,21 @@ inline Trajectory syntheticTrajectory(std::uint64_t episode) {
     step.action = core::Action(random.below(core::kActionCount));
     step.request = {random.below(3)};
     step.label = {core::Action(action), static_cast<expert::ActionSet>(1 << action), 0};
-    step.lessons = {{step.request, step.label}, {{random.below(3), 2}, {core::Action::kIdle, 1 << 6, 0}}};
+    step.labelled_requests = {{step.request, step.label}, {{random.below(3), 2}, {core::Action::kIdle, 1 << 6, 0}}};
     trajectory.steps.push_back(step);
   }
   trajectory.score.f1 = 0.5;
   return trajectory;
+}
+
+/// A Replay of synthetic trajectories, whose actions are a function of the episode.
+inline std::vector<Trajectory> replaySynthetic(const std::vector<EpisodeActions>& episodes) {
+  std::vector<Trajectory> trajectories;
+  for (const EpisodeActions& episode : episodes) {
+    trajectories.push_back(syntheticTrajectory(episode.episode));
+    for (int s = 0; s < kTinySteps; ++s) EXPECT_EQ(trajectories.back().steps[s].action, episode.actions[s]);
+  }
+  return trajectories;
 }
 
 }  // namespace early_fusion::learning

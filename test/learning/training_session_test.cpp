@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <yaml-cpp/yaml.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -37,8 +36,7 @@ class TrainingSessionTest : public testing::Test {
   }
 
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
-    RolloutRunner runner(session.world(), session.trainingTask(), session.options().seed,
-                         teacherFromName(session.trainer().options().teacher));
+    RolloutRunner runner = session.trainingRunner();
     while (session.trainer().trajectoriesSeen() < trajectories) {
       const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
       const auto agent = makePolicyAgent(session.trainer().policy(), exploration, session.options().seed);
@@ -165,30 +163,6 @@ TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
   } catch (const core::Error& error) {
     EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
   }
-}
-
-TEST(SessionOptions, EveryShippedPresetSaysEveryOptionOfTraining) {
-  TrainingOptions training;
-  const core::OptionSet set = training.options();
-  for (const auto& entry : fs::directory_iterator(fs::path(core::shareFolder()) / "config" / "presets")) {
-    EXPECT_NO_THROW(resolveSessionOptions({{"preset", entry.path().stem().string()}}, "test")) << entry.path();
-    const YAML::Node preset = core::loadYamlFile(entry.path());
-    for (const core::Option& option : set.options()) EXPECT_TRUE(preset[option.name]) << entry.path() << option.name;
-  }
-  EXPECT_THROW(resolveSessionOptions({{"preset", "slow"}}, "test"), core::Error);
-}
-
-TEST(SessionOptions, TheDefaultsAreThoseOfThePaper) {
-  SessionOptions paper = resolveSessionOptions({{"preset", "paper"}}, "test"), defaults;
-  defaults.preset = paper.preset;
-  EXPECT_EQ(paper.options().toYaml(), defaults.options().toYaml());
-}
-
-TEST(SessionOptions, WhatIsGivenWinsOverThePreset) {
-  const SessionOptions options = resolveSessionOptions({{"learning_rate", "0.25"}, {"preset", "paper"}}, "test");
-  EXPECT_DOUBLE_EQ(options.training.learning_rate, 0.25);
-  EXPECT_EQ(options.training.window, 150);
-  EXPECT_DOUBLE_EQ(options.policy.dropout, 0.5);
 }
 
 }  // namespace

@@ -23,15 +23,13 @@ TEST(Trajectory, AgreementIsTheShareOfTheExpertsActions) {
 
 class TrajectoryRecorderTest : public testing::Test {
  protected:
-  TrajectoryRecorderTest()
-      : task_(sim::loadTask("hard")),
-        episode_(shippedWorld(), task_, sim::sampleEpisode(shippedWorld(), task_, 2, 6)) {}
+  TrajectoryRecorderTest() : task_(sim::loadTask("hard")), episode_(shippedWorld(), {task_, 2, 6}) {}
 
   /// Another one at every step.
   static std::vector<std::uint8_t> frameAt(int step) { return {1, 2, static_cast<std::uint8_t>(step)}; }
 
   Trajectory recordAll(std::uint64_t seed) {
-    TrajectoryRecorder recorder(seed, 6, episode_.setup().instances, episode_.sharedCone());
+    TrajectoryRecorder recorder({task_, seed, 6}, episode_);
     sim::Episode episode = episode_;
     while (!episode.finished()) {
       const core::Action action = recorder.record(episode.state(), frameAt(episode.state().step)).label.action;
@@ -45,19 +43,19 @@ class TrajectoryRecorderTest : public testing::Test {
   sim::Episode episode_;
 };
 
-TEST_F(TrajectoryRecorderTest, LessonsAskForWhatIsThereAndHaveTheExpertsLabel) {
+TEST_F(TrajectoryRecorderTest, RequestsAskForWhatIsThereAndHaveTheExpertsLabel) {
   const Trajectory trajectory = recordAll(1);
   ASSERT_EQ(trajectory.steps.size(), 48u);
   sim::Episode episode = episode_;
   int differing = 0;
   for (const TrajectoryStep& step : trajectory.steps) {
     const sim::EpisodeState& state = episode.state();
-    EXPECT_LE(step.lessons.size(), std::size_t(kRequestsPerFrame));
-    EXPECT_EQ(step.lessons.front().request, step.request);
-    EXPECT_EQ(step.lessons.front().label.action, step.label.action);
+    EXPECT_LE(step.labelled_requests.size(), std::size_t(kMaxRequestsPerFrame));
+    EXPECT_EQ(step.labelled_requests.front().request, step.request);
+    EXPECT_EQ(step.labelled_requests.front().label.action, step.label.action);
     std::set<core::Request> requests{step.request};
-    for (auto lesson = step.lessons.begin() + 1; lesson != step.lessons.end(); ++lesson) {
-      const core::Request& request = lesson->request;
+    for (auto labelled = step.labelled_requests.begin() + 1; labelled != step.labelled_requests.end(); ++labelled) {
+      const core::Request& request = labelled->request;
       EXPECT_TRUE(requests.insert(request).second) << "the same request twice at step " << state.step;
       EXPECT_GE(request.size(), 1u);
       EXPECT_LE(request.size(), 3u);
@@ -70,17 +68,17 @@ TEST_F(TrajectoryRecorderTest, LessonsAskForWhatIsThereAndHaveTheExpertsLabel) {
         EXPECT_LE(core::countOf(request, item), there);
       }
       EXPECT_EQ(
-          lesson->label.action,
+          labelled->label.action,
           expert::label(episode.cone(), episode.setup().instances, state.present, state.orientation, request).action);
-      differing += lesson->label.action != step.label.action;
+      differing += labelled->label.action != step.label.action;
     }
     episode.step(step.action);
   }
   EXPECT_GT(differing, 50);
 }
 
-TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCome) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone(), Teacher::kSearching);
+TEST_F(TrajectoryRecorderTest, TheSearchingExpertKnowsTheWayThatTheCameraHasCome) {
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_, TrainingExpert::kSearching);
   sim::EpisodeSetup setup = episode_.setup();
   setup.orientation = {6, 12};  // the right is out of view
   sim::Episode episode(shippedWorld(), task_, setup);
@@ -98,20 +96,20 @@ TEST_F(TrajectoryRecorderTest, TheSearchingTeacherKnowsTheWayThatTheCameraHasCom
     EXPECT_EQ(recorder.heading(), heading) << "step " << state.step;
     EXPECT_EQ(step.label.action,
               expert::label(episode.cone(), instances, state.present, state.orientation, state.request).action);
-    for (const Lesson& lesson : step.lessons) {
-      EXPECT_EQ(lesson.label.action, expert::searchingLabel(episode.cone(), instances, state.present, state.orientation,
-                                                            heading, lesson.request)
-                                         .action);
-      searched += lesson.label.action !=
-                  expert::label(episode.cone(), instances, state.present, state.orientation, lesson.request).action;
+    for (const LabelledRequest& labelled : step.labelled_requests) {
+      EXPECT_EQ(labelled.label.action, expert::searchingLabel(episode.cone(), instances, state.present,
+                                                              state.orientation, heading, labelled.request)
+                                           .action);
+      searched += labelled.label.action !=
+                  expert::label(episode.cone(), instances, state.present, state.orientation, labelled.request).action;
     }
     recorder.setAction(action);
     episode.step(action);
   }
-  EXPECT_GT(searched, 0) << "the two teachers are to differ";
+  EXPECT_GT(searched, 0) << "the two experts are to differ";
 }
 
-TEST_F(TrajectoryRecorderTest, TheTeacherCollectsNothingThatIsNotRequestedAndRemovesNothingThatIs) {
+TEST_F(TrajectoryRecorderTest, TheTrainingExpertCollectsNothingThatIsNotRequestedAndRemovesNothingThatIs) {
   int collects = 0, removes = 0, nothing = 0;
   const Trajectory trajectory = recordAll(1);
   sim::Episode episode(shippedWorld(), task_, episode_.setup());
@@ -119,15 +117,15 @@ TEST_F(TrajectoryRecorderTest, TheTeacherCollectsNothingThatIsNotRequestedAndRem
     const sim::EpisodeState& state = episode.state();
     const int nearest = episode.cone().nearest(state.orientation, state.present);
     EXPECT_EQ(step.nearest_item, nearest < 0 ? -1 : episode.setup().instances[nearest].item);
-    for (const Lesson& lesson : step.lessons) {
+    for (const LabelledRequest& labelled : step.labelled_requests) {
       if (nearest < 0) {
         ++nothing;
         continue;
       }
-      const bool requested = core::countOf(lesson.request, step.nearest_item) > 0;
+      const bool requested = core::countOf(labelled.request, step.nearest_item) > 0;
       ++(requested ? removes : collects);
-      EXPECT_FALSE(expert::contains(lesson.label.optimal, requested ? core::Action::kRemove : core::Action::kCollect))
-          << "the teacher does harm";
+      EXPECT_FALSE(expert::contains(labelled.label.optimal, requested ? core::Action::kRemove : core::Action::kCollect))
+          << "the label does harm";
     }
     episode.step(step.action);
   }
@@ -136,17 +134,17 @@ TEST_F(TrajectoryRecorderTest, TheTeacherCollectsNothingThatIsNotRequestedAndRem
   EXPECT_GT(nothing, 5);
 }
 
-TEST(Teacher, HasAName) {
-  EXPECT_EQ(teacherFromName("greedy"), Teacher::kGreedy);
-  EXPECT_EQ(teacherFromName("searching"), Teacher::kSearching);
-  EXPECT_THROW(teacherFromName("wise"), core::Error);
+TEST(TrainingExpert, HasAName) {
+  EXPECT_EQ(trainingExpertFromName("greedy"), TrainingExpert::kGreedy);
+  EXPECT_EQ(trainingExpertFromName("searching"), TrainingExpert::kSearching);
+  EXPECT_THROW(trainingExpertFromName("wise"), core::Error);
 }
 
 TEST_F(TrajectoryRecorderTest, RequestsDependOnSeedEpisodeAndStepAlone) {
   const Trajectory a = recordAll(1), b = recordAll(1), c = recordAll(2);
   const auto requests = [](const TrajectoryStep& step) {
     std::vector<core::Request> all;
-    for (const Lesson& lesson : step.lessons) all.push_back(lesson.request);
+    for (const LabelledRequest& labelled : step.labelled_requests) all.push_back(labelled.request);
     return all;
   };
   int differing = 0;
@@ -157,19 +155,19 @@ TEST_F(TrajectoryRecorderTest, RequestsDependOnSeedEpisodeAndStepAlone) {
   EXPECT_GT(differing, 10);
 }
 
-TEST_F(TrajectoryRecorderTest, WhereThePictureStaysTheSameThereIsNoLessonForAnotherRequest) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+TEST_F(TrajectoryRecorderTest, WhereTheFrameStaysTheSameOnlyThePolicysOwnRequestIsLabelled) {
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_);
   sim::EpisodeState state = episode_.state();
-  EXPECT_GT(recorder.record(state, frameAt(0)).lessons.size(), 1u);
+  EXPECT_GT(recorder.record(state, frameAt(0)).labelled_requests.size(), 1u);
   ++state.step;
-  EXPECT_EQ(recorder.record(state, frameAt(0)).lessons.size(), 1u);
-  EXPECT_EQ(recorder.trajectory().steps.back().lessons.front().request, state.request);
+  EXPECT_EQ(recorder.record(state, frameAt(0)).labelled_requests.size(), 1u);
+  EXPECT_EQ(recorder.trajectory().steps.back().labelled_requests.front().request, state.request);
   ++state.step;
-  EXPECT_GT(recorder.record(state, frameAt(1)).lessons.size(), 1u);
+  EXPECT_GT(recorder.record(state, frameAt(1)).labelled_requests.size(), 1u);
 }
 
 TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
-  TrajectoryRecorder recorder(1, 6, episode_.setup().instances, episode_.sharedCone());
+  TrajectoryRecorder recorder({task_, 1, 6}, episode_);
   sim::EpisodeState state = episode_.state();
   const std::vector<std::uint8_t> a{1, 2, 3}, b{1, 2, 4};
   const core::Request request = state.request, less(request.begin() + 1, request.end());

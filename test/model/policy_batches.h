@@ -29,7 +29,7 @@ struct TestBatch {
       for (int k = random.below(4); k > 0; --k) requests[i].push_back(random.below(items));
       if (i % 3 == 1 && !requests[i].empty()) requests[i].push_back(requests[i][0]);
       Sample sample;
-      for (int k = 0; k < kHistory; ++k) sample.observation.frames[k] = frames[i + k].data();
+      for (int k = 0; k < core::kStackedFrames; ++k) sample.observation.frames[k] = frames[i + k].data();
       if (i % 4 == 3) sample.observation.frames[2] = nullptr;
       if (i % 4 == 2) sample.observation.frames[1] = sample.observation.frames[2] = nullptr;
       sample.observation.request = &requests[i];

@@ -62,7 +62,7 @@ struct TorchBatch {
     weights = torch::zeros({n});
     for (std::int64_t i = 0; i < n; ++i) {
       torch::Tensor newer = torch::full({3, image_size, image_size}, 128.f);
-      for (int f = 0; f < kHistory; ++f) {
+      for (int f = 0; f < core::kStackedFrames; ++f) {
         const std::uint8_t* bytes = samples[i].observation.frames[f];
         torch::Tensor frame = torch::zeros({3, image_size, image_size});  // black
         if (bytes != nullptr) {

@@ -15,12 +15,12 @@ TYPED_TEST_SUITE(FrameStack, Types);
 
 TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
   for (int pixels : {1, 127, 128, 129, 1024}) {
-    std::vector<std::vector<std::uint8_t>> frames(kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
-    for (int f = 0; f < kStackedFrames; ++f) {
+    std::vector<std::vector<std::uint8_t>> frames(core::kStackedFrames, std::vector<std::uint8_t>(3 * pixels));
+    for (int f = 0; f < core::kStackedFrames; ++f) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
     for (const bool black : {false, true}) {
-      const std::uint8_t* stack[kStackedFrames] = {frames[0].data(), black ? nullptr : frames[1].data(),
+      const core::FrameStack stack = {frames[0].data(), black ? nullptr : frames[1].data(),
                                                    frames[2].data()};
       std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
       stackFrames(stack, 0, pixels, x.data());
@@ -40,7 +40,7 @@ TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
 TYPED_TEST(FrameStack, InPartsIsTheSameAndLeavesTheOtherPixelsAlone) {
   constexpr int kPixels = 300, kFirst = 64, kLast = 192;
   const std::vector<std::uint8_t> frame(3 * kPixels, 9);
-  const std::uint8_t* stack[kStackedFrames] = {frame.data(), nullptr, frame.data()};
+  const core::FrameStack stack = {frame.data(), nullptr, frame.data()};
   std::vector<TypeParam> whole(kPixels * kImageChannels), part(whole.size(), fromFloat<TypeParam>(-200.f));
   stackFrames(stack, 0, kPixels, whole.data());
   stackFrames(stack, kFirst, kLast, part.data());

@@ -21,17 +21,15 @@ std::string errorOf(const std::function<void()>& call) {
 
 class ConversionsTest : public testing::Test {
  protected:
-  Scene scene() const {
-    return sceneMessage(episode_, {task_.name, 5, 9}, task_.steps, world_->objects.vocabulary(), "PAN_LEFT", header_);
-  }
+  Scene scene() const { return sceneMessage(episode_, key_, world_->objects.vocabulary(), "PAN_LEFT", header_); }
   SceneState parse(const Scene& scene) const {
     return sceneState(scene, world_->objects.vocabulary(), world_->rig.lattice());
   }
 
   const SmallSession files_;
   const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
-  const sim::Task task_ = sim::loadTask("hard");
-  sim::Episode episode_{*world_, task_, sim::sampleEpisode(*world_, task_, 5, 9)};
+  const sim::EpisodeKey key_{sim::loadTask("hard"), 5, 9};
+  sim::Episode episode_{*world_, key_};
   std_msgs::Header header_;
 };
 
@@ -82,8 +80,31 @@ TEST_F(ConversionsTest, ASceneComesBackBitForBit) {
   EXPECT_EQ(state.state.request, episode_.state().request);
 }
 
+TEST_F(ConversionsTest, AGoalNamesItsFirstEpisode) {
+  RunEpisodesGoal goal;
+  goal.task = "hard";
+  goal.most_instances = 20;
+  goal.seed = 5;
+  goal.first_episode = 9;
+  const sim::EpisodeKey key = firstEpisode(goal);
+  EXPECT_EQ(key.task.name, "hard");
+  EXPECT_EQ(key.task.instances, 12);
+  EXPECT_EQ(key.task.mostInstances(), 20);
+  EXPECT_EQ(key.seed, 5u);
+  EXPECT_EQ(key.number, 9u);
+  goal.most_instances = 4000000000u;
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("most_instances is 4000000000"), std::string::npos);
+}
+
+TEST_F(ConversionsTest, AScenesFieldsNameItsEpisode) {
+  EXPECT_EQ(scene().task, "hard");
+  EXPECT_EQ(scene().seed, 5u);
+  EXPECT_EQ(scene().episode, 9u);
+  EXPECT_EQ(scene().steps, 48u);
+}
+
 TEST_F(ConversionsTest, TheRequestIsReadable) {
-  const Request request = requestMessage(episode_, {"hard", 5, 9}, world_->objects.vocabulary(), header_);
+  const Request request = requestMessage(episode_, key_, world_->objects.vocabulary(), header_);
   EXPECT_EQ(request.episode, 9u);
   EXPECT_EQ(request.step, 0u);
   EXPECT_EQ(request.items, world_->objects.vocabulary().names(episode_.state().request));
@@ -92,7 +113,7 @@ TEST_F(ConversionsTest, TheRequestIsReadable) {
 
 TEST_F(ConversionsTest, AnEpisodesResultCarriesItsScore) {
   while (!episode_.finished()) episode_.step(core::Action::kCollect);
-  const EpisodeResult result = episodeResultMessage(episode_, {"hard", 5, 9}, header_);
+  const EpisodeResult result = episodeResultMessage(episode_, key_, header_);
   EXPECT_EQ(result.requested, 3u);
   EXPECT_EQ(result.steps, 48u);
   EXPECT_EQ(result.seed, 5u);

@@ -21,7 +21,7 @@ class MarkersTest : public testing::Test {
   const SmallSession files_;
   const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
   const sim::Task task_ = sim::loadTask("medium");
-  sim::Episode episode_{*world_, task_, sim::sampleEpisode(*world_, task_, 1, 0)};
+  sim::Episode episode_{*world_, {task_, 1, 0}};
 };
 
 TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {

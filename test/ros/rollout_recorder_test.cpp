@@ -25,10 +25,10 @@ class RolloutRecorderTest : public testing::Test {
   static constexpr std::uint64_t kSeed = 4;
 
   RolloutRecorderTest() {
-    plan_.task = files_.task();
-    plan_.seed = kSeed;
-    plan_.first_episode = 10;
-    plan_.episodes = 3;
+    plan_.goal.task = files_.task();
+    plan_.goal.seed = kSeed;
+    plan_.goal.first_episode = 10;
+    plan_.goal.episodes = 3;
     plan_.weights = "w";
     plan_.mode = "sample";
     recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
@@ -36,7 +36,7 @@ class RolloutRecorderTest : public testing::Test {
 
   /// What a simulator and a policy say of an episode that the expert plays; TILT_UP first where `blunder` is set.
   std::vector<Messages> play(std::uint64_t number, bool blunder = false) {
-    sim::Episode episode(*world_, task_, sim::sampleEpisode(*world_, task_, kSeed, number));
+    sim::Episode episode(*world_, {task_, kSeed, number});
     std::vector<Messages> steps;
     std::string previous;
     while (!episode.finished()) {
@@ -49,7 +49,7 @@ class RolloutRecorderTest : public testing::Test {
   }
 
   Messages step(const sim::Episode& episode, std::uint64_t number, const std::string& previous, core::Action action) {
-    const EpisodeKey key{task_.name, kSeed, number};
+    const sim::EpisodeKey key{task_, kSeed, number};
     const core::Vocabulary& vocabulary = world_->objects.vocabulary();
     std_msgs::Header header;
     header.stamp = ::ros::Time(100, stamp_++);
@@ -57,7 +57,7 @@ class RolloutRecorderTest : public testing::Test {
     rasterizer_.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
     rasterizer_.render(world_->rig.worldFromCamera(episode.state().orientation), image);
     Messages messages{imageMessage(image, header), requestMessage(episode, key, vocabulary, header),
-                      sceneMessage(episode, key, task_.steps, vocabulary, previous, header), Action()};
+                      sceneMessage(episode, key, vocabulary, previous, header), Action()};
     messages.action.header = header;
     messages.action.episode = number;
     messages.action.step = episode.state().step;
@@ -113,10 +113,11 @@ TEST_F(RolloutRecorderTest, RecordsWhatARolloutInOneProcessDoes) {
       EXPECT_EQ(recorded->steps[i].label.action, trajectory.steps[i].label.action);
       EXPECT_EQ(recorded->steps[i].label.optimal, trajectory.steps[i].label.optimal);
       EXPECT_EQ(recorded->steps[i].request, trajectory.steps[i].request);
-      ASSERT_EQ(recorded->steps[i].lessons.size(), trajectory.steps[i].lessons.size());
-      for (std::size_t k = 0; k < trajectory.steps[i].lessons.size(); ++k) {
-        EXPECT_EQ(recorded->steps[i].lessons[k].request, trajectory.steps[i].lessons[k].request);
-        EXPECT_EQ(recorded->steps[i].lessons[k].label.action, trajectory.steps[i].lessons[k].label.action);
+      ASSERT_EQ(recorded->steps[i].labelled_requests.size(), trajectory.steps[i].labelled_requests.size());
+      for (std::size_t k = 0; k < trajectory.steps[i].labelled_requests.size(); ++k) {
+        EXPECT_EQ(recorded->steps[i].labelled_requests[k].request, trajectory.steps[i].labelled_requests[k].request);
+        EXPECT_EQ(recorded->steps[i].labelled_requests[k].label.action,
+                  trajectory.steps[i].labelled_requests[k].label.action);
       }
     }
   }
@@ -155,7 +156,7 @@ TEST_F(RolloutRecorderTest, DropsAnEpisodeOfTheSameNumberThatIsNotThePlans) {
   moved[0].scene.instances[0].x += 1e-9;
   EXPECT_NE(complaint(moved[0]).find("is not the episode"), std::string::npos);
   EXPECT_NE(add(own[0]), nullptr);
-  plan_.most_instances = 6;
+  plan_.goal.most_instances = 6;
   recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
   EXPECT_NE(complaint(own[0]).find("up to 6 objects"), std::string::npos);
   EXPECT_NE(add(other[0]), nullptr);

@@ -124,7 +124,7 @@ TEST_F(SimulatorNodeTest, AStepIsOneStampOnFiveTopicsInTheRightFrames) {
 
 TEST_F(SimulatorNodeTest, TheImageIsTheRasterizersOfThatEpisode) {
   const sim::Task task = sim::loadTask("simple");
-  const sim::Episode episode(*world_, task, sim::sampleEpisode(*world_, task, 3, 5));
+  const sim::Episode episode(*world_, {task, 3, 5});
   sim::Rasterizer rasterizer(*world_, 128);
   core::Image expected;
   rasterizer.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
@@ -224,7 +224,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
       ASSERT_TRUE(awaitStep(episode, step)) << episode << " " << step;
       EXPECT_FALSE(reset(1, 1)) << "a goal is being played";
       const sim::Task task = sim::withUpTo(6, sim::loadTask(files_.task()));
-      EXPECT_EQ(scenes_.back()->instances.size(), sim::sampleEpisode(*world_, task, 9, episode).instances.size());
+      EXPECT_EQ(scenes_.back()->instances.size(), sim::sampleEpisode(*world_, {task, 9, episode}).instances.size());
       action_publisher_.publish(answer("IDLE"));
     }
   }

@@ -13,7 +13,7 @@ namespace {
 std::vector<Instance> someInstances(const World& world, std::uint64_t seed, int count) {
   Task task;
   task.instances = count;
-  return sampleEpisode(world, task, seed, 0).instances;
+  return sampleEpisode(world, {task, seed, 0}).instances;
 }
 
 /// The smallest angle [rad] between the camera's axis and a hull, from a dense grid of points on all triangles of three

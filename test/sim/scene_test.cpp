@@ -42,7 +42,7 @@ TEST(Scene, TellsThePosesOfTheInstancesThatArePresent) {
 TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
   const HorizontalRectangle& area = world().placement;
   for (std::uint64_t episode = 0; episode < 100; ++episode) {
-    const EpisodeSetup setup = sampleEpisode(world(), makeTask(10, 3), 1, episode);
+    const EpisodeSetup setup = sampleEpisode(world(), {makeTask(10, 3), 1, episode});
     ASSERT_EQ(setup.instances.size(), 10u);
     std::vector<PlacedHull> hulls;
     for (const Instance& instance : setup.instances) {
@@ -116,7 +116,7 @@ TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {
   task.most_instances = 5;
   std::map<std::size_t, int> counts;
   for (std::uint64_t episode = 0; episode < 400; ++episode) {
-    const EpisodeSetup setup = sampleEpisode(world(), task, 1, episode);
+    const EpisodeSetup setup = sampleEpisode(world(), {task, 1, episode});
     ++counts[setup.instances.size()];
     EXPECT_EQ(setup.request.size(), 2u);
   }
@@ -127,8 +127,8 @@ TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {
 
 TEST(Scene, ATaskOfOneNumberOfInstancesIsTheSameWhateverElseIsAsked) {
   for (const int most : {0, 3, 4}) {
-    const EpisodeSetup a = sampleEpisode(world(), makeTask(4, 1), 1, 7);
-    const EpisodeSetup b = sampleEpisode(world(), withUpTo(most, makeTask(4, 1)), 1, 7);
+    const EpisodeSetup a = sampleEpisode(world(), {makeTask(4, 1), 1, 7});
+    const EpisodeSetup b = sampleEpisode(world(), {withUpTo(most, makeTask(4, 1)), 1, 7});
     EXPECT_TRUE(a.instances == b.instances && a.request == b.request && a.orientation == b.orientation) << most;
   }
 }
@@ -138,7 +138,7 @@ TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
   bool repeated = false;
   double least_theta = 10, most_theta = -10;
   for (std::uint64_t episode = 0; episode < 400; ++episode) {
-    const EpisodeSetup setup = sampleEpisode(world(), makeTask(4, 1), 2, episode);
+    const EpisodeSetup setup = sampleEpisode(world(), {makeTask(4, 1), 2, episode});
     std::set<int> here;
     for (const Instance& instance : setup.instances) {
       here.insert(instance.item);
@@ -162,7 +162,7 @@ TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
 TEST(Scene, RequestsASubsetOfTheInstances) {
   bool twice = false;
   for (std::uint64_t episode = 0; episode < 200; ++episode) {
-    const EpisodeSetup setup = sampleEpisode(world(), makeTask(6, 3), 3, episode);
+    const EpisodeSetup setup = sampleEpisode(world(), {makeTask(6, 3), 3, episode});
     ASSERT_EQ(setup.request.size(), 3u);
     EXPECT_TRUE(std::is_sorted(setup.request.begin(), setup.request.end()));
     for (int item : setup.request) {
@@ -177,10 +177,10 @@ TEST(Scene, RequestsASubsetOfTheInstances) {
 
 TEST(Scene, IsTheSameForTheSameSeedAndEpisodeOnly) {
   const auto first_x = [](std::uint64_t seed, std::uint64_t episode) {
-    return sampleEpisode(world(), makeTask(4, 1), seed, episode).instances[0].x;
+    return sampleEpisode(world(), {makeTask(4, 1), seed, episode}).instances[0].x;
   };
-  const EpisodeSetup a = sampleEpisode(world(), makeTask(4, 1), 5, 6);
-  const EpisodeSetup b = sampleEpisode(world(), makeTask(4, 1), 5, 6);
+  const EpisodeSetup a = sampleEpisode(world(), {makeTask(4, 1), 5, 6});
+  const EpisodeSetup b = sampleEpisode(world(), {makeTask(4, 1), 5, 6});
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(a.instances[i].item, b.instances[i].item);
     EXPECT_EQ(a.instances[i].x, b.instances[i].x);
@@ -198,13 +198,13 @@ TEST(Scene, SaysHowManyFittedOnATooSmallCounter) {
   small.options.placement_width = 0.3;
   small.options.placement_depth = 0.3;
   small.placement = {0.6, 0.9, -0.15, 0.15, 0.9};
-  const std::string error = errorOf([&] { sampleEpisode(small, makeTask(30, 1), 1, 1); });
+  const std::string error = errorOf([&] { sampleEpisode(small, {makeTask(30, 1), 1, 1}); });
   EXPECT_NE(error.find("of 30 objects fit on the 0.3 x 0.3 m"), std::string::npos) << error;
   EXPECT_EQ(error.find("only 0 of"), std::string::npos) << error;
 }
 
 TEST(Scene, RefusesATaskThatAsksForTooMany) {
-  EXPECT_NE(errorOf([] { sampleEpisode(world(), makeTask(2, 3), 1, 1); }).find("requested is 3"), std::string::npos);
+  EXPECT_NE(errorOf([] { sampleEpisode(world(), {makeTask(2, 3), 1, 1}); }).find("requested is 3"), std::string::npos);
 }
 
 }  // namespace

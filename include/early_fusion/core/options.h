@@ -27,6 +27,9 @@ struct Option {
   bool isSwitch() const { return range == "true | false"; }
 };
 
+/// What a user has set, as (name, text), in the order in which it takes effect.
+using GivenOptions = std::vector<std::pair<std::string, std::string>>;
+
 /// The options of one plain struct, bound to its fields. The struct must outlive the set.
 class OptionSet {
  public:

@@ -1,18 +1,15 @@
 #pragma once
 
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/expert/greedy_expert.h"
 
 namespace early_fusion::expert {
 
-/// How many pictures tell a heading: as many as a policy sees.
-inline constexpr std::size_t kHeadingPictures = 3;
-
-/// Which way the camera was last panned over the last kHeadingPictures: left, right, not at all, or not at all and
-/// there have not been so many yet.
+/// Which way the camera was last panned over the frames that a policy sees, core::kStackedFrames: left, right, not at
+/// all, or not at all and there have not been so many yet.
 enum class Heading { kStart, kNone, kLeft, kRight };
 
-/// @param pans of the pictures so far, the oldest first [steps]; those before the last kHeadingPictures may be left
-/// out.
+/// @param pans of the frames so far, the oldest first [steps]; only the last core::kStackedFrames count.
 Heading headingOver(const std::vector<int>& pans);
 
 /// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.

@@ -12,18 +12,25 @@ namespace early_fusion::learning {
 /// The seed of the episodes that scores are reported on; no training session may use it.
 inline constexpr std::uint64_t kHeldOutSeed = 20191104;
 
+/// How one episode went.
 struct EpisodeOutcome {
   std::uint64_t episode = 0;
   sim::Score score;
   double agreement = 0;
 };
 
-/// Means over episodes (Walsman et al. 2019, sec. IV-B).
+/// The scores of a policy: means over episodes (Walsman et al. 2019, sec. IV-B).
 struct Evaluation {
-  std::string policy;  ///< a weights file, or expert, searching, random, idle
+  Evaluation() = default;
+  /// Of no episodes yet. @param policy_name a weights file, their id, or expert, searching, random, idle.
+  Evaluation(std::string policy_name, std::string task_name, std::uint64_t episodes_seed);
+
+  void add(const Trajectory& trajectory);
+
+  std::string policy;
   std::string task;
   std::uint64_t seed = 0;
-  std::vector<EpisodeOutcome> outcomes;
+  std::vector<EpisodeOutcome> outcomes;  ///< in the order in which they were added
 
   double f1() const;
   double precision() const;

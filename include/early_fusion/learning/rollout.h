@@ -16,15 +16,15 @@ namespace early_fusion::learning {
 /// The trajectories are the same bits for any number of threads and episodes in lockstep.
 class RolloutRunner {
  public:
-  /// `world` must outlive the runner. @param seed of the session: (task, seed, number) is an episode.
-  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed, Teacher teacher = Teacher::kGreedy);
+  /// `world` must outlive the runner. @param task, seed of the episodes, which differ in number.
+  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+                TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   const sim::Task& task() const { return task_; }
   std::uint64_t seed() const { return seed_; }
 
-  /// Plays the episodes and hands over each trajectory, labelled, in the order given. Frames are empty when neither the
-  /// agent nor the caller needs them.
-  /// @param keep_frames whether the trajectories carry their frames.
+  /// Plays the episodes and hands over each trajectory, labelled, in the order given.
+  /// @param keep_frames whether the caller needs the frames: they are empty when neither it nor the agent does.
   void run(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
            const std::function<void(Trajectory)>& finished);
 
@@ -32,22 +32,24 @@ class RolloutRunner {
   void run(std::uint64_t first, int count, Agent& agent, bool keep_frames,
            const std::function<void(Trajectory)>& finished);
 
-  /// Called after every step of every episode with the state before it, for whoever wants to watch.
+  /// Called before every step of every episode is carried out.
   using Observer = std::function<void(std::uint64_t episode, const sim::Episode& before, const TrajectoryStep& step)>;
   void setObserver(Observer observer) { observer_ = std::move(observer); }
 
  private:
-  struct Seat;  // one of the episodes in lockstep
+  struct LockstepEpisode;
 
+  std::vector<std::unique_ptr<LockstepEpisode>> begin(const std::vector<std::uint64_t>& episodes);
+  void observe(LockstepEpisode& one, bool draw);
+  Situation situation(const LockstepEpisode& one, bool drawn) const;
   void playTogether(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
                     const std::function<void(Trajectory)>& finished);
-  void observe(Seat& seat, bool draw);
 
   const sim::World& world_;
   sim::Task task_;
   std::uint64_t seed_;
-  Teacher teacher_;
-  std::vector<sim::Rasterizer> rasterizers_;  // one a seat: its shadow map lasts while its scene does
+  TrainingExpert training_expert_;
+  std::vector<sim::Rasterizer> rasterizers_;  // one an episode in lockstep: it keeps the shadow map
   Observer observer_;
 };
 

@@ -5,39 +5,17 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "early_fusion/core/options.h"
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/learning_curve.h"
 #include "early_fusion/learning/progress.h"
+#include "early_fusion/learning/session_options.h"
 #include "early_fusion/learning/trainer.h"
 #include "early_fusion/sim/task.h"
 #include "early_fusion/sim/world.h"
 
 namespace early_fusion::learning {
-
-/// What a training session is; the same options serve the command line and the trainer node.
-struct SessionOptions {
-  std::string task = "simple";
-  std::string preset = "fast";
-  std::string world;  ///< a WorldOptions file; empty: config/world.yaml of the package
-  std::uint64_t seed = 1;
-  std::string output;   ///< run folder for the checkpoint, the weights, the learning curve and the result
-  bool resume = false;  ///< go on from the output folder's checkpoint where there is one
-  int evaluation_episodes = 500;
-  model::PolicyOptions policy;
-  TrainingOptions training;
-
-  core::OptionSet options();
-};
-
-/// Sets `options` from its defaults, the preset (config/presets/NAME.yaml or a YAML file), then `given` in order.
-/// @param given (name, value) pairs. @param source says where they come from, as OptionSet::set() wants it.
-/// @throws Error naming source, key and value.
-SessionOptions resolveSessionOptions(const std::vector<std::pair<std::string, std::string>>& given,
-                                     const std::string& source);
 
 /// A training session from first trajectory to final score: the trainer with its run folder, learning curve and clock.
 ///
@@ -45,30 +23,33 @@ SessionOptions resolveSessionOptions(const std::vector<std::pair<std::string, st
 /// curve.csv, options.yaml and, at the end, result.json.
 class TrainingSession {
  public:
-  /// Starts a session, or goes on with the one in the output folder when options.resume is set and it has a checkpoint.
+  /// Starts a session. With options.resume, goes on from the output folder's checkpoint if there is one.
   /// @throws Error when the folder holds another session, the checkpoint is of other options or damaged, or the seed is
   /// that of the held-out episodes.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const sim::World> world);
 
   const SessionOptions& options() const { return options_; }
   const sim::World& world() const { return *world_; }
-  /// What the policy is to do and is scored on.
+  /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
-  /// What it learns from.
+  /// The task of the episodes that it learns from.
   sim::Task trainingTask() const { return sim::withUpTo(options_.training.most_instances, task_); }
+  TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.teacher); }
+  /// Plays the episodes that the policy learns from, labelled by the training expert. The session must outlive it.
+  RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }
   Trainer& trainer() { return *trainer_; }
   const Trainer& trainer() const { return *trainer_; }
 
   /// Whether this object went on from a checkpoint.
   bool resumed() const { return resumed_; }
 
-  /// Trains a round that is due, and writes the checkpoint, the weights and the curve.
+  /// Trains a round that is due, and writes the weights, the curve and the checkpoint.
   RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
 
-  /// Names the weights as they stand: "simple-seed1-1250".
+  /// Names the current weights: "simple-seed1-1250".
   std::string weightsId() const;
 
-  /// The policy with what it was trained on, as it is published and written to weights.safetensors.
+  /// The policy with metadata on its training, as it is published and written to weights.safetensors.
   nn::WeightsFile weights() const;
 
   Progress progress() const;
@@ -81,6 +62,7 @@ class TrainingSession {
 
  private:
   void resume();
+  std::vector<Trajectory> replay(const std::vector<EpisodeActions>& episodes) const;
   void save() const;
   double elapsedSec() const;
   std::string path(const std::string& name) const;
@@ -91,8 +73,8 @@ class TrainingSession {
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;
   bool resumed_ = false;
-  double elapsed_before_sec_ = 0;
-  std::uint64_t trajectories_before_ = 0;
+  double elapsed_before_sec_ = 0;          // in the session's earlier runs
+  std::uint64_t trajectories_before_ = 0;  // likewise
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

@@ -6,61 +6,74 @@
 #include <vector>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/expert/searching_expert.h"
 #include "early_fusion/sim/episode.h"
 
 namespace early_fusion::learning {
 
-/// What a policy with this request should do.
-struct Lesson {
+/// A request and what a policy that is given it should do.
+struct LabelledRequest {
   core::Request request;
   expert::Label label;
 };
 
-/// For how many requests a frame is labelled, the policy's own among them, if the scene has so many.
-inline constexpr int kRequestsPerFrame = 8;
+/// A frame is labelled for at most so many requests, the policy's own among them.
+inline constexpr int kMaxRequestsPerFrame = 8;
 
 /// One step of a rollout as training keeps it.
 struct TrajectoryStep {
   /// RGB8 (image_size, image_size, 3). Where nothing has moved, the frame of the step before: the same memory.
   std::shared_ptr<const std::vector<std::uint8_t>> frame;
-  core::Request request;        ///< that the policy was given
-  core::Action action;          ///< what it did
-  expert::Label label;          ///< what the expert that sees everything would have done
-  std::vector<Lesson> lessons;  ///< the teacher's: for that request, then for others, at most kRequestsPerFrame
-  int nearest_item = -1;        ///< what COLLECT or REMOVE would take; -1 where nothing is in the cone
-  bool repeats = false;         ///< the policy saw frames and request of the step before once more
+  core::Request request;  ///< that the policy was given
+  core::Action action;    ///< what it did
+  expert::Label label;    ///< what the greedy expert would have done
+  /// By the training expert: the policy's own request first, then others, kMaxRequestsPerFrame at most.
+  std::vector<LabelledRequest> labelled_requests;
+  int nearest_item = -1;  ///< what COLLECT or REMOVE would take; -1 where nothing is in the cone
+  bool repeats = false;   ///< observation and request are those of the step before
 };
 
+/// A labelled rollout of one episode.
 struct Trajectory {
-  std::uint64_t episode = 0;
+  std::uint64_t episode = 0;  ///< its number in the session
   std::vector<TrajectoryStep> steps;
   sim::Score score;
 
-  /// Share of steps at which the policy did what the expert would have done.
+  /// What a policy sees at `step`.
+  core::FrameStack frameStack(std::size_t step) const;
+
+  /// Share of steps at which the policy did what the greedy expert would have done.
   double agreement() const;
 };
 
+/// What it takes to play an episode again.
+struct EpisodeActions {
+  std::uint64_t episode = 0;
+  std::vector<core::Action> actions;  ///< one a step
+};
+
 /// Who labels what a policy is trained on.
-enum class Teacher {
+enum class TrainingExpert {
   kGreedy,     ///< the paper's expert, which sees everything: expert::label()
   kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
 };
 
 /// "greedy", "searching".
-const std::vector<std::string>& teacherNames();
+const std::vector<std::string>& trainingExpertNames();
 
 /// @throws Error naming the known ones.
-Teacher teacherFromName(const std::string& name);
+TrainingExpert trainingExpertFromName(const std::string& name);
 
 /// Turns the states of one episode into a labelled trajectory; the same class serves rollouts in one process and the
 /// trainer node, which sees the states as messages.
 class TrajectoryRecorder {
  public:
-  /// @param seed of the session: with `episode` and the step it decides which other requests a frame is labelled for.
-  TrajectoryRecorder(std::uint64_t seed, std::uint64_t episode, std::vector<sim::Instance> instances,
-                     std::shared_ptr<const sim::ConeTable> cone, Teacher teacher = Teacher::kGreedy);
+  /// @param key of the episode: with the step, it decides which other requests a frame is labelled for.
+  /// @param episode whose instances are labelled; need not outlive the constructor.
+  TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
+                     TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   /// Labels a state and keeps it; states must come in order from step 0.
   /// @return the step, valid until the next call. Its action is IDLE until setAction().
@@ -78,16 +91,16 @@ class TrajectoryRecorder {
   Trajectory finish(const sim::Score& score);
 
  private:
-  Lesson lesson(const sim::EpisodeState& state, const core::Request& request) const;
-  std::vector<Lesson> lessons(const sim::EpisodeState& state, bool moved) const;
+  LabelledRequest label(const sim::EpisodeState& state, const core::Request& request) const;
+  std::vector<LabelledRequest> labelRequests(const sim::EpisodeState& state, bool moved) const;
   bool repeatsLast() const;
 
   std::uint64_t seed_;
   std::vector<sim::Instance> instances_;
   std::shared_ptr<const sim::ConeTable> cone_;
-  Teacher teacher_;
+  TrainingExpert training_expert_;
   int requested_ = 0;            // instances requested at step 0
-  std::vector<int> latest_pan_;  // of the frames that the policy sees [steps], the oldest first
+  std::vector<int> latest_pan_;  // pan [steps] of the last kStackedFrames frames, the oldest first
   Trajectory trajectory_;
 };
 

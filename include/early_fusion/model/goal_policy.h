@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -10,30 +9,12 @@
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/options.h"
 #include "early_fusion/core/vocabulary.h"
+#include "early_fusion/model/sample.h"
 #include "early_fusion/nn/batch_norm.h"
 #include "early_fusion/nn/parameters.h"
 #include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::model {
-
-/// How many frames the network sees: the current one and the two before it (Walsman et al. 2019, sec. III).
-inline constexpr int kHistory = 3;
-
-/// What the policy decides from. Nothing is owned.
-struct Observation {
-  /// RGB8 frames (image_size, image_size, 3), the newest first; nullptr, a black frame, where there is none yet.
-  std::array<const std::uint8_t*, kHistory> frames{};
-  const core::Request* request = nullptr;
-};
-
-/// An observation and what the policy should do there.
-struct Sample {
-  Observation observation;
-  std::array<float, core::kActionCount> target{};  ///< a distribution over actions; one-hot for a single label
-  /// Weights of the unlikelihood loss, nn::unlikelihoodLoss(), of what the policy must not do there.
-  std::array<float, core::kActionCount> unlikelihood{};
-  float weight = 1.f;
-};
 
 /// The choices of PolicyOptions::precision.
 inline std::vector<std::string> precisionNames() { return {"auto", "f32", "bf16"}; }

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
+#include "early_fusion/core/frame_stack.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/nn/aligned_buffer.h"
 #include "early_fusion/nn/conv_block.h"
@@ -11,9 +10,6 @@
 #include "early_fusion/nn/parameters.h"
 
 namespace early_fusion::model {
-
-/// The frames of one observation, the newest first; nullptr is a black frame.
-using Frames = std::array<const std::uint8_t*, nn::kStackedFrames>;
 
 inline constexpr int kBlocks = 4;
 
@@ -26,7 +22,7 @@ struct VisionTrunkShape {
 
 /// What a training step sees: views, each with the goals that are asked for there. A view's goals lie side by side.
 struct ViewBatch {
-  std::vector<Frames> views;
+  std::vector<core::FrameStack> views;
   std::vector<int> first_goal;  ///< of each view, and last the number of goals: views.size() + 1 numbers
 
   int viewCount() const { return static_cast<int>(views.size()); }
@@ -62,10 +58,10 @@ class VisionTrunk {
 
   /// Inference of one observation, goal (goal_channels) -> features (featureCount()). Threads may call at a time, each
   /// with its own number in [0, threads).
-  void predict(int thread, const Frames& frames, const float* goal, float* features);
+  void predict(int thread, const core::FrameStack& frames, const float* goal, float* features);
 
   /// The same bits, with all threads on the one observation.
-  void predictOnAllThreads(const Frames& frames, const float* goal, float* features);
+  void predictOnAllThreads(const core::FrameStack& frames, const float* goal, float* features);
 
  private:
   /// What passes from layer to layer, one set a thread.
@@ -84,7 +80,7 @@ class VisionTrunk {
   void backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
   /// How what comes before a block must be laid out for predict(); `block` may be the one after the last.
   nn::MapLayout predictionLayout(int block) const;
-  void stackOnAllThreads(const Frames& frames, T* x);
+  void stackOnAllThreads(const core::FrameStack& frames, T* x);
   void writeFeatures(const T* map, float* features) const;
 
   VisionTrunkShape shape_;

@@ -61,7 +61,7 @@ class ActingPolicy {
   std::unique_ptr<model::GoalPolicy> policy_;
   Acting acting_;
   model::ActionChoice choice_ = model::ActionChoice::kArgmax;
-  std::deque<core::Image> frames_;  // the newest first
+  std::deque<core::Image> frames_;  // the oldest first
   core::Request request_;
   std::uint64_t episode_ = 0;
   std::uint32_t step_ = 0;

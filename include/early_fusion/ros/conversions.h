@@ -2,6 +2,7 @@
 
 #include <early_fusion/EpisodeResult.h>
 #include <early_fusion/Request.h>
+#include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -16,12 +17,8 @@
 
 namespace early_fusion::nodes {
 
-/// Which episode a step belongs to.
-struct EpisodeKey {
-  std::string task;
-  std::uint64_t seed = 0;
-  std::uint64_t episode = 0;
-};
+/// The first of a goal's episodes. @throws core::Error as sim::loadTask() and sim::withUpTo().
+sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
 /// rgb8, rows without padding. Takes the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
@@ -32,14 +29,15 @@ sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_
 sensor_msgs::JointState jointStateMessage(const sim::CameraRig& rig, sim::Orientation orientation,
                                           const std_msgs::Header& header);
 
-Request requestMessage(const sim::Episode& episode, const EpisodeKey& key, const core::Vocabulary& vocabulary,
+Request requestMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                        const std_msgs::Header& header);
 
 /// @param previous_action the name of the action that led here; empty at step 0.
-Scene sceneMessage(const sim::Episode& episode, const EpisodeKey& key, int steps, const core::Vocabulary& vocabulary,
+Scene sceneMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                    const std::string& previous_action, const std_msgs::Header& header);
 
-EpisodeResult episodeResultMessage(const sim::Episode& episode, const EpisodeKey& key, const std_msgs::Header& header);
+EpisodeResult episodeResultMessage(const sim::Episode& episode, const sim::EpisodeKey& key,
+                                   const std_msgs::Header& header);
 
 /// What a Scene message says, in the simulation's own terms.
 struct SceneState {

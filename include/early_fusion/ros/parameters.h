@@ -1,8 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "early_fusion/core/options.h"
 
@@ -11,11 +9,11 @@ namespace early_fusion::nodes {
 /// The node's private ROS parameters ("~image_size") as (name, text), but for groups that are none of `options`: image
 /// transports keep parameters of their own there. Needs ros::init() and a master.
 /// @throws core::Error naming a parameter that is a list, or an option that is a group.
-std::vector<std::pair<std::string, std::string>> privateParameters(const core::OptionSet& options);
+core::GivenOptions privateParameters(const core::OptionSet& options);
 
-/// Sets every option that has a private ROS parameter ("~image_size") from it.
+/// Sets the options from what privateParameters() gave.
 /// @throws core::Error naming the parameter, its value and the allowed range; for an unknown one, the known ones.
-void loadParameters(core::OptionSet& options);
+void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters);
 
 /// A table for --help: parameter, unit, range, default and help, one option a paragraph.
 std::string describeParameters(const core::OptionSet& options);

@@ -2,6 +2,7 @@
 
 #include <early_fusion/Action.h>
 #include <early_fusion/Request.h>
+#include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
 #include <sensor_msgs/Image.h>
 
@@ -16,16 +17,12 @@
 
 namespace early_fusion::nodes {
 
-/// Which episodes are wanted, and how they must be played to count.
+/// Which episodes to record, and how they must be played to count.
 struct RolloutPlan {
-  std::string task;        ///< as a RunEpisodes goal names it: simple, medium, hard or a YAML file
-  int most_instances = 0;  ///< likewise
-  std::uint64_t seed = 0;
-  std::uint64_t first_episode = 0;
-  std::uint32_t episodes = 0;
+  RunEpisodesGoal goal;         ///< the episodes, as the simulator is asked for them
   std::string weights;          ///< the id of the weights that must act
   std::string mode = "argmax";  ///< how they must choose
-  learning::Teacher teacher = learning::Teacher::kGreedy;
+  learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
 };
 
 /// Makes labelled trajectories of the messages of episodes that are played elsewhere.
@@ -35,7 +32,7 @@ struct RolloutPlan {
 /// cannot change what is learnt: its episode is dropped and stays missing().
 class RolloutRecorder {
  public:
-  /// `world` must outlive the recorder. @throws core::Error as sim::loadTask().
+  /// `world` must outlive the recorder. @throws core::Error as firstEpisode().
   RolloutRecorder(const sim::World& world, const RolloutPlan& plan);
 
   /// Takes the four messages of one stamp.
@@ -58,20 +55,20 @@ class RolloutRecorder {
 
  private:
   struct Recording {
-    std::uint64_t number;
+    sim::EpisodeKey key;
     sim::Episode episode;
     learning::TrajectoryRecorder recorder;
     ::ros::Time stamp;            // of the last step
     std::string previous_action;  // recorded at the last step
   };
 
-  std::uint64_t end() const { return plan_.first_episode + plan_.episodes; }
+  std::uint64_t end() const { return first_.number + plan_.goal.episodes; }
   void begin(const Scene& scene);
   void check(const sensor_msgs::Image& image, const Request& request, const Scene& scene, const Action& action) const;
 
   const sim::World& world_;
   RolloutPlan plan_;
-  sim::Task task_;
+  sim::EpisodeKey first_;  // of the plan's episodes
   std::optional<Recording> recording_;
   std::map<std::uint64_t, learning::Trajectory> finished_;
   std::uint64_t next_;

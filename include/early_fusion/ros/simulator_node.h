@@ -21,7 +21,7 @@ namespace early_fusion::nodes {
 /// The simulated pan-tilt camera: publishes a step, waits for the action that answers it, carries it out, and so on.
 ///
 /// Plays what a RunEpisodes goal asks for, or one episode that `reset` begins, or, with free_run, episode after
-/// episode. An episode is a function of (task, seed, episode) and the actions alone.
+/// episode. An episode is a function of its sim::EpisodeKey and the actions alone.
 class SimulatorNode {
  public:
   struct Options {
@@ -44,8 +44,7 @@ class SimulatorNode {
   enum class Driver { kNobody, kGoal, kHand, kFreeRun };
 
   struct Play {
-    EpisodeKey key;
-    sim::Task task;
+    sim::EpisodeKey key;
     sim::Episode episode;
     std::string previous_action;
   };
@@ -64,7 +63,7 @@ class SimulatorNode {
   void onIdleTimer();
 
   /// @throws core::Error when the scene cannot be laid out.
-  void begin(Driver driver, const sim::Task& task, std::uint64_t seed, std::uint64_t episode);
+  void begin(Driver driver, const sim::EpisodeKey& key);
   void freeRun();
   void publishWhenDue();
   void publishStep();
@@ -76,9 +75,7 @@ class SimulatorNode {
   Options options_;
   ::ros::NodeHandle node_;
   std::shared_ptr<const sim::World> world_;
-  sim::Task task_;  // of episodes by hand and free_run
-  std::uint64_t seed_;
-  std::uint64_t free_run_episode_ = 0;
+  sim::EpisodeKey free_run_;  // the next episode of free_run; its task is the default of reset
   Health health_;
   StepPublisher publisher_;
 

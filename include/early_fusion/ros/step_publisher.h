@@ -22,13 +22,12 @@ class StepPublisher {
 
   /// @param previous_action the name of the action that led to this state; empty at step 0.
   /// @return the stamp, later than every one before it.
-  ::ros::Time publish(const sim::Episode& episode, const EpisodeKey& key, int steps,
-                      const std::string& previous_action);
+  ::ros::Time publish(const sim::Episode& episode, const sim::EpisodeKey& key, const std::string& previous_action);
 
   /// The step published last once more, with its stamp, for a policy that has missed it.
   void publishAgain();
 
-  void publishResult(const sim::Episode& episode, const EpisodeKey& key);
+  void publishResult(const sim::Episode& episode, const sim::EpisodeKey& key);
 
   /// The joint states as they stand, with the time of now: tf goes on while nothing is played.
   void publishJointStates();

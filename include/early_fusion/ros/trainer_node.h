@@ -21,7 +21,7 @@ namespace early_fusion::nodes {
 class TrainerNode {
  public:
   struct Options {
-    learning::SessionOptions session;  ///< only declares them: a preset comes below what was given, see the constructor
+    learning::SessionOptions session;
     int workers = 1;
     double stall_sec = 10;
     double progress_period_sec = 1;
@@ -30,9 +30,8 @@ class TrainerNode {
     core::OptionSet options();
   };
 
-  /// The session's options are the defaults, the preset and the private parameters, in this order.
-  /// @throws core::Error as learning::resolveSessionOptions() and learning::TrainingSession.
-  explicit TrainerNode(const Options& options);
+  /// @param session to bring to its end; started with options.session, see startSession().
+  TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session);
 
   /// Gives up the round that is being trained: its trajectories are rolled out again by whoever resumes the session.
   ~TrainerNode();
@@ -47,7 +46,7 @@ class TrainerNode {
 
   void publishWeights(const std::string& mode, std::uint64_t seed);
   /// Publishes the weights as they stand and has the plan's episodes played with them.
-  /// @param plan without task, weights and teacher, which are the session's.
+  /// @param plan without task, weights and training expert, which are the session's.
   void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
   /// [0, 1]

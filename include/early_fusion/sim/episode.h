@@ -27,7 +27,10 @@ struct EpisodeState {
 /// The rules of the game, without pictures.
 class Episode {
  public:
-  /// `world` must outlive the episode.
+  /// The episode that `key` names. `world` must outlive it. @throws Error as sampleEpisode().
+  Episode(const World& world, const EpisodeKey& key) : Episode(world, key.task, sampleEpisode(world, key)) {}
+
+  /// One that begins otherwise.
   Episode(const World& world, const Task& task, EpisodeSetup setup);
 
   const EpisodeSetup& setup() const { return setup_; }

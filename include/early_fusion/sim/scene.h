@@ -27,6 +27,13 @@ struct Instance {
 /// Bit i is set while instance i is still on the counter.
 using InstanceMask = std::uint32_t;
 
+/// Names an episode. Processes with the same world begin the same key with the same scene, request and orientation.
+struct EpisodeKey {
+  Task task;                 ///< with most_instances, on which the scene depends, too
+  std::uint64_t seed = 0;    ///< of the session
+  std::uint64_t number = 0;  ///< of the episode in the session, from 0
+};
+
 /// What an episode begins with, and what does not change in it.
 struct EpisodeSetup {
   std::vector<Instance> instances;
@@ -44,7 +51,7 @@ std::vector<ObjectPose> presentObjects(const World& world, const std::vector<Ins
 /// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
 EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random);
 
-/// The episode of this task that a session of this seed plays as its number `episode`.
-EpisodeSetup sampleEpisode(const World& world, const Task& task, std::uint64_t seed, std::uint64_t episode);
+/// The same with the key's own random stream.
+EpisodeSetup sampleEpisode(const World& world, const EpisodeKey& key);
 
 }  // namespace early_fusion::sim

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "early_fusion/core/frame_stack.h"
+#include "early_fusion/core/vocabulary.h"
+
+namespace early_fusion::model {
+
+/// What a policy decides from. Nothing is owned.
+struct Observation {
+  core::FrameStack frames{};
+  const core::Request* request = nullptr;
+};
+
+}  // namespace early_fusion::model

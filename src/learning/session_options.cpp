@@ -1,0 +1,39 @@
+#include "early_fusion/learning/session_options.h"
+
+#include "early_fusion/core/file.h"
+
+namespace early_fusion::learning {
+
+core::OptionSet SessionOptions::options() {
+  core::OptionSet set("session");
+  set.add("task", task, "simple, medium, hard, or a task's YAML file");
+  set.add("preset", preset,
+          "fast, paper, or a YAML file: how the policy learns; its values replace the defaults of other options");
+  set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
+  set.add("seed", seed, "decides episodes, first weights and every other draw");
+  set.add("output", output, "run folder: checkpoint, weights, learning curve, result");
+  set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
+  set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
+          "held-out ones that the final score is the mean of");
+  set.include(policy.options());
+  set.include(training.options());
+  return set;
+}
+
+SessionOptions presetOptions(const core::GivenOptions& given) {
+  SessionOptions options;
+  for (const auto& [name, value] : given) {
+    if (name == "preset") options.preset = value;
+  }
+  options.options().setFromYamlFile(core::findConfig("presets", options.preset));
+  return options;
+}
+
+SessionOptions resolveSessionOptions(const core::GivenOptions& given, const std::string& source) {
+  SessionOptions options = presetOptions(given);
+  core::OptionSet set = options.options();
+  for (const auto& [name, value] : given) set.set(name, value, source);
+  return options;
+}
+
+}  // namespace early_fusion::learning
