@@ -10,6 +10,8 @@
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
 #include "early_fusion/model/action_choice.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/sim/task.h"
 
 namespace early_fusion::learning {
@@ -288,8 +290,8 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   if (counters.size() != 4 || *std::min_element(counters.begin(), counters.end()) < 0) {
     throw core::Error(source + ": tensor " + kCounters + " should hold 4 counts; the file is damaged");
   }
-  std::unique_ptr<model::GoalPolicy>& acting = averaged_ ? averaged_ : learner_;
-  std::unique_ptr<model::GoalPolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
+  std::unique_ptr<model::TrainablePolicy>& acting = averaged_ ? averaged_ : learner_;
+  std::unique_ptr<model::TrainablePolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
   const Eigen::Index size = acting->parameters().values().size();
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
     throw core::Error(source + ": its policy is another, of the items " + core::joined(loaded->vocabulary().names()) +

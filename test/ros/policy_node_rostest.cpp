@@ -11,6 +11,8 @@
 #include <filesystem>
 
 #include "early_fusion/core/random.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/ros/acting_policy.h"
 #include "early_fusion/ros/topics.h"
 #include "small_session.h"

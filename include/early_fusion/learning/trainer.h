@@ -9,8 +9,9 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/learning/trajectory.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/trainable_policy.h"
 #include "early_fusion/nn/adam.h"
+#include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::learning {
 
@@ -90,8 +91,8 @@ class Trainer {
   const TrainingOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }
   /// What acts and is shipped: the mean over recent training steps where options().averaging is set.
-  model::GoalPolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
-  const model::GoalPolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
+  model::TrainablePolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
+  const model::TrainablePolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
   const std::deque<Trajectory>& window() const { return window_; }
 
  private:
@@ -113,8 +114,8 @@ class Trainer {
 
   TrainingOptions options_;
   std::uint64_t seed_;
-  std::unique_ptr<model::GoalPolicy> learner_;
-  std::unique_ptr<model::GoalPolicy> averaged_;  // null where options_.averaging is 0
+  std::unique_ptr<model::TrainablePolicy> learner_;
+  std::unique_ptr<model::TrainablePolicy> averaged_;  // null where options_.averaging is 0
   nn::Adam adam_;
   std::deque<Trajectory> window_;
   std::array<float, core::kActionCount> action_weights_{};
