@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/nn/aligned_buffer.h"
 #include "early_fusion/nn/convolution.h"
 #include "policy_batches.h"

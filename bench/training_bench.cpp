@@ -9,7 +9,7 @@ namespace {
 constexpr int kBatch = 32;
 
 std::function<void()> ourStep(int channels, const std::string& precision, const model::TestBatch& batch) {
-  std::shared_ptr<model::GoalPolicy> policy =
+  std::shared_ptr<model::TrainablePolicy> policy =
       model::makePolicy(policyOptions(channels, precision), model::testVocabulary(kItems), 1);
   auto adam = std::make_shared<nn::Adam>(policy->parameters().values().size(), nn::AdamOptions{});
   return [policy, adam, &batch] {

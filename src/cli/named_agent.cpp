@@ -1,6 +1,7 @@
 #include "named_agent.h"
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/model/policy_file.h"
 
 namespace early_fusion::cli {
 

@@ -8,6 +8,8 @@
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
 #include "early_fusion/learning/training_samples.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::learning {
 
@@ -172,8 +174,8 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
 }
 
 void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& source) {
-  std::unique_ptr<model::GoalPolicy>& acting = averaged_ ? averaged_ : learner_;
-  std::unique_ptr<model::GoalPolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
+  std::unique_ptr<model::TrainablePolicy>& acting = averaged_ ? averaged_ : learner_;
+  std::unique_ptr<model::TrainablePolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
   const Eigen::Index size = acting->parameters().values().size();
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
     throw core::Error(source + ": its policy is another, of the items " + core::joined(loaded->vocabulary().names()) +

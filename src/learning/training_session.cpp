@@ -10,6 +10,7 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/model/action_choice.h"
+#include "early_fusion/model/policy_file.h"
 
 namespace early_fusion::learning {
 
@@ -84,6 +85,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " but the world draws " + std::to_string(world_->options.image_size) +
                       " pixels; set both to the same");
   }
+  options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
   std::error_code ignored;  // the first write reports it
   const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
@@ -149,13 +151,11 @@ std::string TrainingSession::weightsId() const {
 }
 
 nn::WeightsFile TrainingSession::weights() const {
-  const std::string fov_deg = std::to_string(world_->options.horizontal_fov_deg);
   return model::savePolicy(trainer_->policy(), {{"id", weightsId()},
                                                 {"task", task_.name},
                                                 {"preset", options_.preset},
                                                 {"seed", std::to_string(options_.seed)},
                                                 {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
-                                                {"horizontal_fov_deg", fov_deg},
                                                 {"options", learningOptions(options_)}});
 }
 

@@ -3,19 +3,85 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
+#include <vector>
+
+#include "early_fusion/nn/aligned_buffer.h"
+#include "early_fusion/nn/conv_block.h"
+#include "early_fusion/nn/frame_stack.h"
 
 namespace early_fusion::model {
 
+namespace {
+
+/// Images run in parallel, each from end to end of a block in its core's cache.
+/// @tparam T float or bfloat16, in which maps are held and convolutions computed.
 template <class T>
-VisionTrunk<T>::VisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape, int threads)
-    : shape_(shape), threads_(threads), scratch_(threads) {
+class BlockTrunk : public VisionTrunk {
+ public:
+  BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape, int threads);
+
+  void initialise(core::Random& random) override {
+    for (nn::ConvBlock<T>& block : blocks_) block.initialise(random);
+  }
+  void loadWeights() override {
+    for (nn::ConvBlock<T>& block : blocks_) block.loadWeights();
+  }
+  void loadRunningStatistics() override {
+    for (nn::ConvBlock<T>& block : blocks_) block.loadRunningStatistics();
+  }
+  void setNormalisation(nn::Normalisation normalisation) override { normalisation_ = normalisation; }
+  int mapCount(const FrameStackBatch& batch) const override { return mapCount(batch, kBlocks - 1); }
+  void forward(const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& maps) override;
+  void backward(const FrameStackBatch& batch, const nn::Matrix& goals, const nn::Matrix& dmaps,
+                nn::Matrix& dgoals) override;
+  void predict(int thread, const core::FrameStack& frames, const float* goal, float* map) override;
+
+ private:
+  /// What passes from layer to layer, one set a thread.
+  struct Scratch {
+    nn::AlignedBuffer<T> input;        // (H,W,C in)
+    nn::AlignedBuffer<T> output;       // (H/2,W/2,C out)
+    nn::AlignedBuffer<T> convolution;  // (H,W,C out)
+  };
+
+  int pixels() const { return shape_.image_size * shape_.image_size; }
+  int positions() const { return shape_.mapEdge() * shape_.mapEdge(); }
+
+  // Convolutions and pooled maps of a block; convolution c makes the maps [firstMap(c), firstMap(c + 1)).
+  int convolutionCount(const FrameStackBatch& batch, int block) const {
+    return block <= fusion_block_ ? batch.frameStackCount() : batch.goalCount();
+  }
+  int mapCount(const FrameStackBatch& batch, int block) const {
+    return block < fusion_block_ ? batch.frameStackCount() : batch.goalCount();
+  }
+  int firstMap(const FrameStackBatch& batch, int block, int convolution) const {
+    return block == fusion_block_ ? batch.first_goal[convolution] : convolution;
+  }
+
+  const T* blockInput(const FrameStackBatch& batch, int block, int convolution, Scratch& scratch);
+  void backwardBlock(int block, const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
+  /// How what comes before a block must be laid out for predict(); `block` may be the one after the last.
+  nn::MapLayout predictionLayout(int block) const;
+  void stackOnAllThreads(const core::FrameStack& frames, T* x);
+  void writeMap(const T* channels_last, float* map) const;
+
+  VisionTrunkShape shape_;
+  int fusion_block_;  // kBlocks where no goal joins: all blocks come before it
+  int threads_;
+  nn::Normalisation normalisation_ = nn::Normalisation::kBatch;
+  std::vector<nn::ConvBlock<T>> blocks_;
+  std::vector<Scratch> scratch_;
+};
+
+template <class T>
+BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape, int threads)
+    : shape_(shape), fusion_block_(shape.fusion ? shape.fusion->block : kBlocks), threads_(threads), scratch_(threads) {
   const std::size_t pixels = this->pixels();
   for (int b = 0; b < kBlocks; ++b) {
     nn::ConvBlockShape block{};
     block.image_channels = b == 0 ? nn::kImageChannels : shape.channels;
-    block.goal_channels = b == shape.fusion_block ? shape.goal_channels : 0;
+    block.goal_channels = b == fusion_block_ ? shape.fusion->goal_channels : 0;
     block.out_channels = shape.channels;
     block.size = shape.image_size >> b;
     block.input_scale = b == 0 ? nn::kByteScale : 1.f;
@@ -29,44 +95,9 @@ VisionTrunk<T>::VisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& 
 }
 
 template <class T>
-void VisionTrunk<T>::initialise(core::Random& random) {
-  for (nn::ConvBlock<T>& block : blocks_) block.initialise(random);
-}
-
-template <class T>
-void VisionTrunk<T>::loadWeights() {
-  for (nn::ConvBlock<T>& block : blocks_) block.loadWeights();
-}
-
-template <class T>
-void VisionTrunk<T>::loadRunningStatistics() {
-  for (nn::ConvBlock<T>& block : blocks_) block.loadRunningStatistics();
-}
-
-template <class T>
-int VisionTrunk<T>::featureCount() const {
-  return blocks_.back().outputSize();
-}
-
-template <class T>
-int VisionTrunk<T>::convolutionCount(const ViewBatch& batch, int block) const {
-  return block <= shape_.fusion_block ? batch.viewCount() : batch.goalCount();
-}
-
-template <class T>
-int VisionTrunk<T>::mapCount(const ViewBatch& batch, int block) const {
-  return block < shape_.fusion_block ? batch.viewCount() : batch.goalCount();
-}
-
-template <class T>
-int VisionTrunk<T>::firstMap(const ViewBatch& batch, int block, int convolution) const {
-  return block == shape_.fusion_block ? batch.first_goal[convolution] : convolution;
-}
-
-template <class T>
-const T* VisionTrunk<T>::blockInput(const ViewBatch& batch, int block, int convolution, Scratch& scratch) {
+const T* BlockTrunk<T>::blockInput(const FrameStackBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    nn::stackFrames(batch.views[convolution], 0, pixels(), scratch.input.data());
+    nn::stackFrames(batch.frame_stacks[convolution], 0, pixels(), scratch.input.data());
   } else {
     blocks_[block - 1].output(convolution, scratch.input.data());
   }
@@ -74,18 +105,17 @@ const T* VisionTrunk<T>::blockInput(const ViewBatch& batch, int block, int convo
 }
 
 template <class T>
-void VisionTrunk<T>::writeFeatures(const T* map, float* features) const {
-  const int positions = featureCount() / shape_.channels;
+void BlockTrunk<T>::writeMap(const T* channels_last, float* map) const {
   for (int c = 0; c < shape_.channels; ++c) {
-    for (int p = 0; p < positions; ++p) features[c * positions + p] = nn::toFloat(map[p * shape_.channels + c]);
+    for (int p = 0; p < positions(); ++p) {
+      map[c * positions() + p] = nn::toFloat(channels_last[p * shape_.channels + c]);
+    }
   }
 }
 
 template <class T>
-void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn::Normalisation normalisation,
-                             nn::Matrix& features) {
+void BlockTrunk<T>::forward(const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& maps) {
   for (int b = 0; b < kBlocks; ++b) {
-    const bool fuses = blocks_[b].shape().goal_channels > 0;
     const int convolutions = convolutionCount(batch, b);
     blocks_[b].reserve(mapCount(batch, b));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
@@ -94,26 +124,25 @@ void VisionTrunk<T>::forward(const ViewBatch& batch, const nn::Matrix& goals, nn
       Scratch& scratch = scratch_[thread];
       blocks_[b].convolve(thread, blockInput(batch, b, i, scratch), scratch.convolution.data());
       for (int map = firstMap(batch, b, i); map < firstMap(batch, b, i + 1); ++map) {
-        blocks_[b].pool(thread, map, scratch.convolution.data(), fuses ? goals.row(map).data() : nullptr);
+        blocks_[b].pool(thread, map, scratch.convolution.data(), b == fusion_block_ ? goals.row(map).data() : nullptr);
       }
     }
-    blocks_[b].finishForward(mapCount(batch, b), normalisation);
+    blocks_[b].finishForward(mapCount(batch, b), normalisation_);
   }
-  for (int i = 0; i < batch.goalCount(); ++i) {
+  for (int i = 0; i < mapCount(batch); ++i) {
     blocks_.back().output(i, scratch_[0].output.data());
-    writeFeatures(scratch_[0].output.data(), features.row(i).data());
+    writeMap(scratch_[0].output.data(), maps.row(i).data());
   }
 }
 
 template <class T>
-void VisionTrunk<T>::backward(const ViewBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures,
-                              nn::Matrix& dgoals) {
-  const int positions = featureCount() / shape_.channels;
-  for (int i = 0; i < batch.goalCount(); ++i) {
+void BlockTrunk<T>::backward(const FrameStackBatch& batch, const nn::Matrix& goals, const nn::Matrix& dmaps,
+                             nn::Matrix& dgoals) {
+  for (int i = 0; i < mapCount(batch); ++i) {
     T* gradient = blocks_.back().outputGradient(i);
     for (int c = 0; c < shape_.channels; ++c) {
-      for (int p = 0; p < positions; ++p) {
-        gradient[p * shape_.channels + c] = nn::fromFloat<T>(dfeatures(i, c * positions + p));
+      for (int p = 0; p < positions(); ++p) {
+        gradient[p * shape_.channels + c] = nn::fromFloat<T>(dmaps(i, c * positions() + p));
       }
     }
     blocks_.back().sumOutputGradient(i);
@@ -122,7 +151,8 @@ void VisionTrunk<T>::backward(const ViewBatch& batch, const nn::Matrix& goals, c
 }
 
 template <class T>
-void VisionTrunk<T>::backwardBlock(int block, const ViewBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals) {
+void BlockTrunk<T>::backwardBlock(int block, const FrameStackBatch& batch, const nn::Matrix& goals,
+                                  nn::Matrix& dgoals) {
   nn::ConvBlock<T>& own = blocks_[block];
   const nn::ImageShares shares(convolutionCount(batch, block));
   own.beginBackward(mapCount(batch, block));
@@ -144,25 +174,12 @@ void VisionTrunk<T>::backwardBlock(int block, const ViewBatch& batch, const nn::
 }
 
 template <class T>
-nn::MapLayout VisionTrunk<T>::predictionLayout(int block) const {
+nn::MapLayout BlockTrunk<T>::predictionLayout(int block) const {
   return block < kBlocks ? blocks_[block].predictionLayout() : nn::MapLayout::kChannelsLast;
 }
 
 template <class T>
-void VisionTrunk<T>::predict(int thread, const core::FrameStack& frames, const float* goal, float* features) {
-  Scratch& scratch = scratch_[thread];
-  nn::stackFrames(frames, 0, pixels(), scratch.input.data());
-  T* in = scratch.input.data();
-  T* out = scratch.output.data();
-  for (int b = 0; b < kBlocks; ++b) {
-    blocks_[b].predict(thread, in, goal, scratch.convolution.data(), predictionLayout(b + 1), out);
-    std::swap(in, out);
-  }
-  writeFeatures(in, features);
-}
-
-template <class T>
-void VisionTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
+void BlockTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (int part = 0; part < threads_; ++part) {
     nn::stackFrames(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
@@ -170,19 +187,38 @@ void VisionTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
 }
 
 template <class T>
-void VisionTrunk<T>::predictOnAllThreads(const core::FrameStack& frames, const float* goal, float* features) {
-  Scratch& scratch = scratch_[0];
-  stackOnAllThreads(frames, scratch.input.data());
+void BlockTrunk<T>::predict(int thread, const core::FrameStack& frames, const float* goal, float* map) {
+  const bool on_all_threads = thread == kAllThreads;
+  Scratch& scratch = scratch_[on_all_threads ? 0 : thread];
   T* in = scratch.input.data();
   T* out = scratch.output.data();
+  T* y = scratch.convolution.data();
+  if (on_all_threads) {
+    stackOnAllThreads(frames, in);
+  } else {
+    nn::stackFrames(frames, 0, pixels(), in);
+  }
   for (int b = 0; b < kBlocks; ++b) {
-    blocks_[b].predictOnAllThreads(in, goal, scratch.convolution.data(), predictionLayout(b + 1), out, threads_);
+    if (on_all_threads) {
+      blocks_[b].predictOnAllThreads(in, goal, y, predictionLayout(b + 1), out, threads_);
+    } else {
+      blocks_[b].predict(thread, in, goal, y, predictionLayout(b + 1), out);
+    }
     std::swap(in, out);
   }
-  writeFeatures(in, features);
+  writeMap(in, map);
 }
 
-template class VisionTrunk<float>;
-template class VisionTrunk<nn::bfloat16>;
+bool usesBfloat16(const std::string& precision) {
+  return precision == "bf16" || (precision == "auto" && nn::processorHasBfloat16());
+}
+
+}  // namespace
+
+std::unique_ptr<VisionTrunk> makeVisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape,
+                                             const std::string& precision, int threads) {
+  if (usesBfloat16(precision)) return std::make_unique<BlockTrunk<nn::bfloat16>>(parameters, shape, threads);
+  return std::make_unique<BlockTrunk<float>>(parameters, shape, threads);
+}
 
 }  // namespace early_fusion::model

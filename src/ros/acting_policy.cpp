@@ -1,17 +1,11 @@
 #include "early_fusion/ros/acting_policy.h"
 
 #include <cassert>
-#include <cstdlib>
 
+#include "early_fusion/model/policy_file.h"
 #include "early_fusion/model/saliency.h"
 
 namespace early_fusion::nodes {
-
-namespace {
-
-constexpr double kDefaultFovDeg = 60;  // Walsman et al. 2019, sec. IV-A
-
-}  // namespace
 
 void ActingPolicy::load(nn::WeightsFile file, const std::string& source, const Acting& acting) {
   const model::ActionChoice choice = model::actionChoiceFromName(acting.mode);
@@ -21,12 +15,6 @@ void ActingPolicy::load(nn::WeightsFile file, const std::string& source, const A
   policy_ = std::move(policy);
   acting_ = acting;
   choice_ = choice;
-}
-
-double ActingPolicy::horizontalFovDeg() const {
-  const auto found = file_.metadata.find("horizontal_fov_deg");
-  const double fov_deg = found == file_.metadata.end() ? 0 : std::atof(found->second.c_str());
-  return fov_deg > 0 && fov_deg < 180 ? fov_deg : kDefaultFovDeg;
 }
 
 model::Observation ActingPolicy::observation() const {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "early_fusion/learning/evaluation.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "shipped_world.h"
 
 namespace early_fusion::learning {

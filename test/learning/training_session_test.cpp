@@ -65,6 +65,12 @@ TEST_F(TrainingSessionTest, RunsToAScoreAndTheSameSeedGivesTheSameWeights) {
               core::readFile(folder_ / "b" / "weights.safetensors"));
 }
 
+TEST_F(TrainingSessionTest, WeightsSayTheFieldOfViewOfItsWorld) {
+  const auto narrow = std::make_shared<sim::World>(*world());
+  narrow->options.horizontal_fov_deg = 45;
+  EXPECT_EQ(TrainingSession(options("narrow"), narrow).weights().metadata.at("horizontal_fov_deg"), "45");
+}
+
 TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
   SessionOptions varied = options("varied");
   varied.training.most_instances = 6;

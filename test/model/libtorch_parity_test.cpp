@@ -1,6 +1,7 @@
 // The network against the same one in libtorch: same weights, same batch, same numbers.
 #include <gtest/gtest.h>
 
+#include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/nn/adam.h"
 #include "parity_case.h"
 #include "torch_early_fusion.h"
@@ -42,7 +43,7 @@ class LibtorchParity : public testing::TestWithParam<Case> {
   }
 
   PolicyOptions options;
-  std::unique_ptr<GoalPolicy> policy;
+  std::unique_ptr<TrainablePolicy> policy;
   std::shared_ptr<TorchEarlyFusion> reference;
 };
 

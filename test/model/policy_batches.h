@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "early_fusion/core/random.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/core/vocabulary.h"
+#include "early_fusion/model/sample.h"
 
 namespace early_fusion::model {
 

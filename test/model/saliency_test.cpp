@@ -14,9 +14,6 @@ class OnePixelPolicy : public GoalPolicy {
 
   const PolicyOptions& options() const override { return options_; }
   const core::Vocabulary& vocabulary() const override { return vocabulary_; }
-  nn::Parameters& parameters() override { return parameters_; }
-  const nn::Parameters& parameters() const override { return parameters_; }
-  void parametersChanged() override {}
   void predict(const std::vector<Observation>& observations, Probabilities& probabilities) override {
     probabilities.setZero(observations.size(), core::kActionCount);
     for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -24,14 +21,11 @@ class OnePixelPolicy : public GoalPolicy {
       probabilities(i, 1) = 1 - probabilities(i, 0);
     }
   }
-  void setNormalisation(nn::Normalisation) override {}
-  double lossAndGradients(const std::vector<Sample>&, std::uint64_t) override { return 0; }
 
  private:
   int pixel_;
   PolicyOptions options_;
   core::Vocabulary vocabulary_;
-  nn::Parameters parameters_;
 };
 
 TEST(OcclusionSaliency, IsWhatPaintingTheCellChanges) {

@@ -1,7 +1,15 @@
 early_fusion_add_test(model action_choice_test)
-early_fusion_add_test(model goal_policy_test)
+early_fusion_add_test(model early_fusion_test)
 early_fusion_add_test(model golden_parity_test)
+early_fusion_add_test(model network_policy_test)
+early_fusion_add_test(model policy_file_test)
+early_fusion_add_test(model policy_head_test)
+early_fusion_add_test(model policy_kinds_test)
+early_fusion_add_test(model policy_options_test)
+early_fusion_add_test(model request_encoder_test)
 early_fusion_add_test(model saliency_test)
+early_fusion_add_test(model sample_batch_test)
+early_fusion_add_test(model vision_trunk_test)
 
 # The second implementation that the network is checked against.
 foreach(name libtorch_golden_test libtorch_parity_test)

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/policy_options.h"
+#include "early_fusion/model/sample.h"
 
 namespace early_fusion::model {
 

@@ -4,6 +4,8 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/random.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -15,8 +17,9 @@ class ActingPolicyTest : public testing::Test {
   ActingPolicyTest() {
     options_.image_size = kSize;
     options_.precision = "f32";
+    options_.horizontal_fov_deg = 45;
     policy_ = model::makePolicy(options_, core::Vocabulary({"bowl", "mug"}), 3);
-    acting_.load(model::savePolicy(*policy_, {{"horizontal_fov_deg", "45"}}), "test", {"argmax", 0, "f32"});
+    acting_.load(model::savePolicy(*policy_, {}), "test", {"argmax", 0, "f32"});
   }
 
   static core::Image frame(std::uint64_t seed) {
@@ -37,7 +40,7 @@ class ActingPolicyTest : public testing::Test {
   }
 
   model::PolicyOptions options_;
-  std::unique_ptr<model::GoalPolicy> policy_;
+  std::unique_ptr<model::TrainablePolicy> policy_;
   ActingPolicy acting_;
 };
 
@@ -128,10 +131,11 @@ TEST_F(ActingPolicyTest, ShowsTheLastImageTinted) {
   EXPECT_GT(redder, 0);
 }
 
-TEST_F(ActingPolicyTest, TellsTheFieldOfViewOfItsWeights) {
+TEST_F(ActingPolicyTest, TellsTheFieldOfViewOfItsWeightsAndRefusesThoseWithout) {
+  nn::WeightsFile file = acting_.file();
+  file.metadata.erase("horizontal_fov_deg");
+  EXPECT_THROW(acting_.load(file, "test", {}), core::Error);
   EXPECT_DOUBLE_EQ(acting_.horizontalFovDeg(), 45);
-  acting_.load(model::savePolicy(*policy_, {}), "test", {});
-  EXPECT_DOUBLE_EQ(acting_.horizontalFovDeg(), 60);
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include <filesystem>
 
 #include "early_fusion/core/random.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/ros/acting_policy.h"
 #include "early_fusion/ros/camera_image.h"
 #include "early_fusion/ros/topics.h"

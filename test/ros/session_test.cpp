@@ -14,6 +14,7 @@
 #include "child_process.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
+#include "early_fusion/model/policy_file.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {

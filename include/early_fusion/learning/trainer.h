@@ -10,8 +10,9 @@
 #include "early_fusion/learning/training_options.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/learning/window_checkpoint.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/trainable_policy.h"
 #include "early_fusion/nn/adam.h"
+#include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::learning {
 
@@ -60,8 +61,8 @@ class Trainer {
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
   const TrainingOptions& options() const { return options_; }
   /// The policy that acts and is shipped: with options().averaging, the moving average of the trained one.
-  model::GoalPolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
-  const model::GoalPolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
+  model::TrainablePolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
+  const model::TrainablePolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
   const std::deque<Trajectory>& window() const { return window_; }
 
  private:
@@ -82,8 +83,8 @@ class Trainer {
 
   TrainingOptions options_;
   std::uint64_t seed_;
-  std::unique_ptr<model::GoalPolicy> learner_;
-  std::unique_ptr<model::GoalPolicy> averaged_;  // null where options_.averaging is 0
+  std::unique_ptr<model::TrainablePolicy> learner_;
+  std::unique_ptr<model::TrainablePolicy> averaged_;  // null where options_.averaging is 0
   nn::Adam adam_;
   std::deque<Trajectory> window_;
   int new_trajectories_ = 0;

@@ -9,6 +9,7 @@
 #include "early_fusion/core/image.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/goal_policy.h"
+#include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::nodes {
 
@@ -40,8 +41,8 @@ class ActingPolicy {
   const nn::WeightsFile& file() const { return file_; }
   const Acting& acting() const { return acting_; }
   int imageSize() const { return policy_->options().image_size; }
-  /// Field of view of the pictures that it was trained on [deg].
-  double horizontalFovDeg() const;
+  /// Field of view of the frames that it was trained on [degrees].
+  double horizontalFovDeg() const { return policy_->options().horizontal_fov_deg; }
 
   /// Decides about the next image of an episode. The images before it count when they belong to the same episode and
   /// its steps follow each other; the same step again replaces its image.

@@ -1,28 +1,19 @@
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/policy_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/core/image_size.h"
-#include "early_fusion/model/early_fusion.h"
+#include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::model {
 
 namespace {
 
-constexpr const char* kFormat = "early_fusion/2";
-constexpr int kWidestRegister = 16;  // channels come in multiples of it
-
-void validate(PolicyOptions options, const core::Vocabulary& vocabulary) {
-  options.options().validate("policy");
-  if (vocabulary.size() == 0) throw core::Error("policy: the vocabulary is empty; it needs at least one item");
-}
-
-bool usesBfloat16(const std::string& precision) {
-  return precision == "bf16" || (precision == "auto" && nn::processorHasBfloat16());
-}
+constexpr char kFormat[] = "early_fusion/3";
+constexpr char kFieldOfView[] = "horizontal_fov_deg";
 
 std::string join(const std::vector<std::int64_t>& shape) {
   std::string text;
@@ -44,15 +35,52 @@ core::Vocabulary vocabularyFromText(const std::string& text, const std::string& 
   }
 }
 
-/// The options that savePolicy() writes; how to compute is not among them.
-PolicyOptions optionsFromFile(const nn::WeightsFile& file, const std::string& source) {
+/// A JSON list, in the order of the network's outputs.
+std::string actionsText() {
+  nlohmann::json names;
+  for (core::Action action : core::kAllActions) names.push_back(core::actionName(action));
+  return names.dump();
+}
+
+/// Keys of the metadata that are options of the policy. How to compute is not among them.
+std::vector<std::string> storedOptions(const PolicyKind& kind) {
+  std::vector<std::string> keys = kind.options;
+  keys.insert(keys.begin(), "kind");
+  keys.emplace_back(kFieldOfView);
+  return keys;
+}
+
+/// The options that a file may hold: a user's, and the field of view.
+core::OptionSet fileOptions(PolicyOptions& options) {
+  core::OptionSet set = options.options();
+  set.add(kFieldOfView, options.horizontal_fov_deg, 1.0, 179.0, "degrees", "Horizontal field of view of the frames.");
+  return set;
+}
+
+void checkMetadata(const nn::WeightsFile& file, const std::string& source) {
   const std::string& format = file.meta("format", source);
   if (format != kFormat) {
     throw core::Error(source + ": metadata 'format' is '" + format + "'; this version reads '" + kFormat + "'");
   }
+  const std::string& actions = file.meta("actions", source);
+  const bool same = nlohmann::json::parse(actions, nullptr, false) == nlohmann::json::parse(actionsText());
+  if (!same) {  // unlike !=, true for what is not JSON
+    throw core::Error(source + ": metadata 'actions' is " + actions + "; this version has " + actionsText() +
+                      ", in this order");
+  }
+  if (file.metadata.count(kFieldOfView) == 0) {
+    throw core::Error(source + ": metadata '" + kFieldOfView +
+                      "' is missing: the horizontal field of view [degrees] of the frames that the policy was trained "
+                      "on, to which a camera's images are cropped");
+  }
+}
+
+PolicyOptions optionsFromFile(const nn::WeightsFile& file, const std::string& source) {
+  checkMetadata(file, source);
   PolicyOptions options;
-  core::OptionSet set = options.options();
-  for (const char* key : {"kind", "channels", "fusion_block", "dropout", "image_size"}) {
+  core::OptionSet set = fileOptions(options);
+  set.set("kind", file.meta("kind", source), source + ": metadata");
+  for (const std::string& key : storedOptions(policyKind(options.kind))) {
     set.set(key, file.meta(key, source), source + ": metadata");
   }
   return options;
@@ -104,35 +132,12 @@ void storeTensors(const std::vector<nn::TensorSlice>& slices, const Eigen::Vecto
 
 }  // namespace
 
-core::OptionSet PolicyOptions::options() {
-  core::OptionSet set("policy");
-  set.addChoice("kind", kind, {"early_fusion"}, "How the goal reaches the network");
-  set.addMultiple("channels", channels, kWidestRegister, 16, 256, "",
-                  "Channels of every block, of the hidden layer and of the goal's embedding");
-  set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
-          "The block whose output the goal is joined to; 0 joins it to the image itself");
-  set.add("dropout", dropout, 0.0, 0.95, "", "Share of the hidden layer's units that are dropped in training");
-  core::addImageSize(set, "image_size", image_size, "Edge of the square frames that the policy sees");
-  set.addChoice("precision", precision, precisionNames(),
-                "What convolutions compute in; auto is bf16 where the processor has it natively");
-  return set;
-}
-
-std::unique_ptr<GoalPolicy> makePolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary,
-                                       std::uint64_t seed) {
-  validate(options, vocabulary);
-  if (usesBfloat16(options.precision)) {
-    return std::make_unique<EarlyFusion<nn::bfloat16>>(options, vocabulary, seed);
-  }
-  return std::make_unique<EarlyFusion<float>>(options, vocabulary, seed);
-}
-
-std::unique_ptr<GoalPolicy> loadPolicy(const nn::WeightsFile& file, const std::string& source,
-                                       const std::string& precision) {
+std::unique_ptr<TrainablePolicy> loadPolicy(const nn::WeightsFile& file, const std::string& source,
+                                            const std::string& precision) {
   PolicyOptions options = optionsFromFile(file, source);
   if (!precision.empty()) options.precision = precision;
   const core::Vocabulary vocabulary = vocabularyFromText(file.meta("vocabulary", source), source);
-  std::unique_ptr<GoalPolicy> policy;
+  std::unique_ptr<TrainablePolicy> policy;
   try {
     policy = makePolicy(options, vocabulary, 0);
   } catch (const core::Error& error) {
@@ -146,15 +151,19 @@ std::unique_ptr<GoalPolicy> loadPolicy(const nn::WeightsFile& file, const std::s
   return policy;
 }
 
-nn::WeightsFile savePolicy(const GoalPolicy& policy, const std::vector<std::pair<std::string, std::string>>& extra) {
+nn::WeightsFile savePolicy(const TrainablePolicy& policy,
+                           const std::vector<std::pair<std::string, std::string>>& extra) {
   nn::WeightsFile file;
   for (const auto& [key, value] : extra) file.metadata[key] = value;
   PolicyOptions options = policy.options();
-  const core::OptionSet set = options.options();
+  const std::vector<std::string> stored = storedOptions(policyKind(options.kind));
+  const core::OptionSet set = fileOptions(options);
   for (const core::Option& option : set.options()) {
-    if (option.name != "precision") file.metadata[option.name] = option.get();
+    const bool needed = std::find(stored.begin(), stored.end(), option.name) != stored.end();
+    if (needed) file.metadata[option.name] = option.get();
   }
   file.metadata["format"] = kFormat;
+  file.metadata["actions"] = actionsText();
   file.metadata["vocabulary"] = nlohmann::json(policy.vocabulary().names()).dump();
   const nn::Parameters& parameters = policy.parameters();
   storeTensors(parameters.parameterSlices(), parameters.values(), file);

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "early_fusion/model/policy_head.h"
+#include "early_fusion/model/request_encoder.h"
+#include "early_fusion/model/sample_batch.h"
+#include "early_fusion/model/trainable_policy.h"
+#include "early_fusion/model/vision_trunk.h"
+
+namespace early_fusion::model {
+
+/// What all kinds do alike: a trunk makes maps of frame stacks, an encoder makes goals of requests, a head makes
+/// actions of features. A kind says how features come of maps and goals, and adds no parameters.
+///
+/// Parameters: block1 to block4 (conv, norm), embedding, hidden, output.
+class NetworkPolicy : public TrainablePolicy {
+ public:
+  const PolicyOptions& options() const override { return options_; }
+  const core::Vocabulary& vocabulary() const override { return vocabulary_; }
+  nn::Parameters& parameters() override { return parameters_; }
+  const nn::Parameters& parameters() const override { return parameters_; }
+  void parametersChanged() override;
+  void setNormalisation(nn::Normalisation normalisation) override { trunk_->setNormalisation(normalisation); }
+  void predict(const std::vector<Observation>& observations, Probabilities& probabilities) override;
+  double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) override;
+
+ protected:
+  /// @param feature_count numbers that the head decides from.
+  NetworkPolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed,
+                const VisionTrunkShape& trunk_shape, int feature_count);
+
+  VisionTrunk& trunk() { return *trunk_; }
+
+ private:
+  /// Training: goals (goalCount(), channels) -> features (goalCount(), feature_count).
+  virtual void forward(const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& features) = 0;
+
+  /// Backward of the last forward(): the same batch and goals, dfeatures -> the gradients of the trunk's parameters,
+  /// and dgoals.
+  virtual void backward(const FrameStackBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures,
+                        nn::Matrix& dgoals) = 0;
+
+  /// Inference of one observation: goal (channels) -> features (feature_count). @param thread as
+  /// VisionTrunk::predict().
+  virtual void predictRow(int thread, const core::FrameStack& frames, const float* goal, float* features) = 0;
+
+  void refreshWeights();
+  void refreshInference();
+  void reserve(int rows);
+
+  PolicyOptions options_;
+  core::Vocabulary vocabulary_;
+  int threads_;
+  nn::Parameters parameters_;
+  std::unique_ptr<VisionTrunk> trunk_;
+  RequestEncoder encoder_;
+  PolicyHead head_;
+  bool weights_stale_ = true;
+  bool statistics_stale_ = true;
+
+  // A training step's, one row a sample.
+  SampleBatch batch_;
+  nn::Matrix goals_, dgoals_, features_, dfeatures_;
+  // Inference's: one row an observation, then one row a thread.
+  nn::Matrix predict_counts_, predict_goals_, thread_features_;
+};
+
+}  // namespace early_fusion::model

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/sample.h"
+#include "early_fusion/nn/batch_norm.h"
+#include "early_fusion/nn/parameters.h"
+
+namespace early_fusion::model {
+
+/// A policy whose weights can be read, written and learnt. The same weights, samples and thread count give the same
+/// bits.
+class TrainablePolicy : public GoalPolicy {
+ public:
+  /// Parameters and running statistics, f32, in PyTorch's names and shapes ("block1.conv.weight" OIHW, ...).
+  virtual nn::Parameters& parameters() = 0;
+  virtual const nn::Parameters& parameters() const = 0;
+
+  /// Call after writing parameters() from outside (an optimizer's step, a loaded file).
+  virtual void parametersChanged() = 0;
+
+  /// Which statistics lossAndGradients() normalises with: the batch's until this is called.
+  virtual void setNormalisation(nn::Normalisation normalisation) = 0;
+
+  /// Forward with dropout, then backward: fills parameters().gradients() with the gradient of the weighted mean of
+  /// cross-entropy and unlikelihood, and updates the running statistics. Neighbouring samples with the same frames
+  /// share the work that their goals have no part in, and count as one image in the batch statistics up to there.
+  /// @param dropout_seed decides the dropout mask. @return the loss.
+  virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
+};
+
+}  // namespace early_fusion::model

@@ -1,0 +1,29 @@
+#include "early_fusion/model/policy_options.h"
+
+#include "early_fusion/core/image_size.h"
+#include "early_fusion/model/policy_kinds.h"
+#include "early_fusion/model/vision_trunk.h"
+
+namespace early_fusion::model {
+
+namespace {
+
+constexpr int kChannelsStep = 16;  // the widest register's floats
+
+}  // namespace
+
+core::OptionSet PolicyOptions::options() {
+  core::OptionSet set("policy");
+  set.addChoice("kind", kind, policyKindNames(), "how the goal reaches the network");
+  set.addMultiple("channels", channels, kChannelsStep, kChannelsStep, kMaxChannels, "",
+                  "of every block, of the hidden layer and of the goal's embedding");
+  set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
+          "the block whose output the goal is joined to; 0 joins it to the image itself");
+  set.add("dropout", dropout, 0.0, 0.95, "", "share of the hidden layer's units that are dropped in training");
+  core::addImageSize(set, "image_size", image_size, "edge of the square frames that the policy sees");
+  set.addChoice("precision", precision, precisionNames(),
+                "what convolutions compute in; auto is bf16 where the processor has it natively");
+  return set;
+}
+
+}  // namespace early_fusion::model
