@@ -94,7 +94,7 @@ void addRender(CLI::App& app) {
       "render",
       "Draw what the camera sees as a PNG file.\n"
       "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
-  const auto given = std::make_shared<GivenOptions>();
+  const auto given = std::make_shared<core::GivenOptions>();
   addOptionFlags(*command, RenderOptions().options(), *given);
   command->get_option("--out")->required();
   command->callback([given] {

@@ -64,7 +64,7 @@ void checkMetadata(const nn::WeightsFile& file, const std::string& source) {
   }
   const std::string& actions = file.meta("actions", source);
   const bool same = nlohmann::json::parse(actions, nullptr, false) == nlohmann::json::parse(actionsText());
-  if (!same) {  // unlike !=, true for what is not JSON
+  if (!same) {  // nlohmann's != is false, too, for a text that is not JSON
     throw core::Error(source + ": metadata 'actions' is " + actions + "; this version has " + actionsText() +
                       ", in this order");
   }

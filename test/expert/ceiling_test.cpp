@@ -51,7 +51,7 @@ void countInstances(const sim::World& world, const sim::Episode& episode, Statis
 
 Statistics play(const sim::World& world, const sim::Task& task) {
   Statistics statistics;
-  for (int number = 0; number < kEpisodes; ++number) {
+  for (std::uint64_t number = 0; number < kEpisodes; ++number) {
     sim::Episode episode(world, {task, kSeed, number});
     countInstances(world, episode, statistics);
     while (!episode.finished()) {

@@ -124,7 +124,7 @@ TEST(SearchingExpert, IdlesWhenNothingRequestedIsThere) {
 TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
   const sim::Task task = sim::loadTask("hard");
   std::map<bool, int> cases;
-  for (int number = 0; number < 40; ++number) {
+  for (std::uint64_t number = 0; number < 40; ++number) {
     const sim::Episode episode(world(), {task, 3, number});
     const std::vector<sim::Instance>& instances = episode.setup().instances;
     const sim::EpisodeState& state = episode.state();
@@ -167,7 +167,7 @@ TEST(SearchingExpert, InViewMeansThatItsMiddleOrMoreIsInThePicture) {
   core::Random random(4);
   const sim::Task task = sim::loadTask("hard");
   const double half_fov = 0.5 * world().options.horizontal_fov_deg * M_PI / 180;
-  for (int number = 0; number < 40; ++number) {
+  for (std::uint64_t number = 0; number < 40; ++number) {
     const sim::Episode episode(world(), {task, 4, number});
     const Orientation from = episode.state().orientation;
     for (std::size_t i = 0; i < episode.setup().instances.size(); ++i) {
@@ -193,7 +193,7 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
   const sim::Task task = sim::loadTask(name);
   constexpr int kEpisodes = 500;
   double f1 = 0;
-  for (int number = 0; number < kEpisodes; ++number) {
+  for (std::uint64_t number = 0; number < kEpisodes; ++number) {
     sim::Episode episode(world(), {task, 5, number});
     std::vector<int> pans;
     while (!episode.finished()) {

@@ -4,13 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <filesystem>
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/sim/object_set.h"
 #include "early_fusion/sim/placed_hull.h"
 #include "test_world.h"
+#include "ycb_scans.h"
 
 namespace early_fusion::sim {
 namespace {
@@ -114,13 +114,12 @@ TEST(ConvexHull, FallsLessThanAFifthOfAMillimetreShortOfTheShippedMeshes) {
 }
 
 TEST(ConvexHull, FallsLessThanAFifthOfAMillimetreShortOfScans) {
-  const std::filesystem::path scans = core::shareFolder() + "/../shared/ycb";
-  if (!std::filesystem::is_directory(scans)) GTEST_SKIP() << "no scans in " << scans;
+  const auto scans = ycbFolder();
+  if (!scans) GTEST_SKIP() << kNoYcbScans;
   std::string yaml = "objects:\n";
-  for (const auto& entry : std::filesystem::directory_iterator(scans)) {
-    if (!entry.is_directory()) continue;
-    const std::string name = entry.path().filename();
-    yaml += "  - {name: '" + name + "', mesh: '" + entry.path().string() + "/textured.obj'}\n";
+  int count = 0;
+  for (const std::string& mesh : ycbMeshes(*scans)) {
+    yaml += "  - {name: scan_" + std::to_string(count++) + ", mesh: '" + mesh + "'}\n";
   }
   const TestFolder folder;
   expectCollisionHullsFit(ObjectSet::load(folder.write("scans.yaml", yaml), 2000));
