@@ -2,31 +2,32 @@
 
 #include <cmath>
 
-#include "early_fusion/sim/rasterizer.h"
-#include "handmade_world.h"
+#include "early_fusion/render/rasterizer.h"
+#include "world/handmade_world.h"
 
-namespace early_fusion::sim {
+namespace early_fusion::render {
 namespace {
 
 constexpr int kItems = 16;
 constexpr int kCells = 9;  // 972 triangles a box, about as many a ball
 constexpr int kImageSize = 128;
 
-const World& world() {
-  static const std::shared_ptr<const World> kitchen = handmadeKitchen(kItems, kCells);
+const world::World& world() {
+  static const std::shared_ptr<const world::World> kitchen = world::handmadeKitchen(kItems, kCells);
   return *kitchen;
 }
 
 /// A camera that wanders over the counter: another picture in every frame.
 Eigen::Isometry3d wanderingCamera(int frame) {
   const double pan = 0.5 * std::sin(0.013 * frame), tilt = 0.45 + 0.15 * std::sin(0.031 * frame);
-  return lookAlong({0, 0, 1.35}, {std::cos(pan) * std::cos(tilt), std::sin(pan) * std::cos(tilt), -std::sin(tilt)});
+  return world::lookAlong({0, 0, 1.35},
+                          {std::cos(pan) * std::cos(tilt), std::sin(pan) * std::cos(tilt), -std::sin(tilt)});
 }
 
 /// Pictures a second; the argument is the number of objects. Every thread has a rasterizer of its own.
 void render(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
-  rasterizer.setObjects(handmadeScene(static_cast<int>(state.range(0)), kItems));
+  rasterizer.setObjects(world::handmadeScene(static_cast<int>(state.range(0)), kItems));
   core::Image image;
   int frame = 1000 * state.thread_index();
   for (auto _ : state) {
@@ -40,14 +41,14 @@ BENCHMARK(render)->ArgName("objects")->Arg(4)->Arg(8)->Arg(12)->Threads(1)->Thre
 /// The shadow map drawn anew, as at the begin of an episode and after COLLECT and REMOVE.
 void changeScene(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
-  const std::vector<ObjectPose> all = handmadeScene(static_cast<int>(state.range(0)), kItems);
-  const std::vector<ObjectPose> but_one(all.begin() + 1, all.end());
+  const std::vector<world::ObjectPose> all = world::handmadeScene(static_cast<int>(state.range(0)), kItems);
+  const std::vector<world::ObjectPose> but_one(all.begin() + 1, all.end());
   bool complete = false;
   for (auto _ : state) rasterizer.setObjects((complete = !complete) ? all : but_one);
 }
 BENCHMARK(changeScene)->ArgName("objects")->Arg(8);
 
 }  // namespace
-}  // namespace early_fusion::sim
+}  // namespace early_fusion::render
 
 BENCHMARK_MAIN();

@@ -11,8 +11,8 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 constexpr int kEpisodes = 64;
 
-const World& shippedWorld() {
-  static const std::shared_ptr<const World> world = loadWorld("");
+const world::World& shippedWorld() {
+  static const std::shared_ptr<const world::World> world = world::loadWorld("");
   return *world;
 }
 
@@ -25,14 +25,14 @@ Task taskOf(std::int64_t instances) {
 void placement(benchmark::State& state) {
   const Task task = taskOf(state.range(0));
   std::uint64_t episode = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(sampleEpisode(shippedWorld(), task, kSeed, episode++ % kEpisodes));
+  for (auto _ : state) benchmark::DoNotOptimize(sampleEpisode(shippedWorld(), {task, kSeed, episode++ % kEpisodes}));
 }
 BENCHMARK(placement)->ArgName("objects")->Arg(4)->Arg(8)->Arg(12)->Unit(benchmark::kMicrosecond);
 
 void coneTable(benchmark::State& state) {
   std::vector<EpisodeSetup> setups;
-  for (int i = 0; i < kEpisodes; ++i) {
-    setups.push_back(sampleEpisode(shippedWorld(), taskOf(state.range(0)), kSeed, i));
+  for (std::uint64_t i = 0; i < kEpisodes; ++i) {
+    setups.push_back(sampleEpisode(shippedWorld(), {taskOf(state.range(0)), kSeed, i}));
   }
   std::size_t next = 0;
   for (auto _ : state) {

@@ -24,7 +24,7 @@ struct EvaluateOptions {
 };
 
 void evaluate(const EvaluateOptions& options) {
-  const auto world = sim::loadWorld(options.world);
+  const auto world = world::loadWorld(options.world);
   const sim::Task task = sim::loadTask(options.task);
   NamedAgent named = makeNamedAgent(options.policy, options.mode, options.seed, *world);
   learning::RolloutRunner runner(*world, task, options.seed);

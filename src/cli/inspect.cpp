@@ -5,7 +5,7 @@
 #include "command.h"
 #include "early_fusion/nn/weights_file.h"
 #include "early_fusion/sim/task.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::cli {
 
@@ -38,16 +38,16 @@ void inspectWeights(const std::string& path) {
 void inspectTask(const std::string& name) { std::cout << sim::loadTask(name).options().toYaml(); }
 
 void inspectWorld(const std::string& path) {
-  const auto world = sim::loadWorld(path);
-  sim::WorldOptions options = world->options;
+  const auto world = world::loadWorld(path);
+  world::WorldOptions options = world->options;
   std::cout << options.options().toYaml() << "\nobjects (triangles; size [m])\n";
   for (int item = 0; item < world->objects.size(); ++item) {
-    const sim::Object& object = world->objects[item];
+    const world::Object& object = world->objects[item];
     const Eigen::Vector3f size = object.mesh.bounds().sizes();
     std::cout << "  " << object.name << " (" << object.mesh.triangleCount() << "; " << size.x() << " x " << size.y()
               << " x " << size.z() << ")\n";
   }
-  const sim::OrientationLattice& lattice = world->rig.lattice();
+  const world::OrientationLattice& lattice = world->rig.lattice();
   std::cout << "camera orientations [2-degree steps]\n  pan " << lattice.lowest.pan << " to " << lattice.highest.pan
             << ", tilt " << lattice.lowest.tilt << " to " << lattice.highest.tilt << "\n";
 }

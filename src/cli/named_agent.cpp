@@ -6,7 +6,7 @@
 namespace early_fusion::cli {
 
 NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std::uint64_t seed,
-                          const sim::World& world) {
+                          const world::World& world) {
   if (name == "expert") return {nullptr, learning::makeExpertAgent()};
   if (name == "searching") return {nullptr, learning::makeSearchingAgent()};
   if (name == "random") return {nullptr, learning::makeRandomAgent(seed)};

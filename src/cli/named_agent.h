@@ -4,7 +4,7 @@
 #include <string>
 
 #include "early_fusion/learning/agent.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::cli {
 
@@ -18,6 +18,6 @@ struct NamedAgent {
 /// @param mode one of model::actionChoiceNames(), for a weights file.
 /// @throws Error when the file is no policy, or knows other items than the world has.
 NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std::uint64_t seed,
-                          const sim::World& world);
+                          const world::World& world);
 
 }  // namespace early_fusion::cli

@@ -3,7 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/model/annotation.h"
-#include "early_fusion/sim/rasterizer.h"
+#include "early_fusion/render/rasterizer.h"
 
 namespace early_fusion::cli {
 
@@ -28,7 +28,7 @@ core::Image sheet(const std::vector<core::Image>& images) {
   return result;
 }
 
-core::Image draw(sim::Rasterizer& rasterizer, const sim::World& world, const PlayedStep& step,
+core::Image draw(render::Rasterizer& rasterizer, const world::World& world, const PlayedStep& step,
                  const PictureStyle& style) {
   core::Image image;
   rasterizer.setObjects(sim::presentObjects(world, step.instances, step.state.present));
@@ -47,9 +47,9 @@ core::Image draw(sim::Rasterizer& rasterizer, const sim::World& world, const Pla
 }
 
 /// The lattice orientation whose optical axis passes nearest to a point in the world [m].
-sim::Orientation aimAt(const sim::World& world, const Eigen::Vector3d& point) {
-  const sim::OrientationLattice& lattice = world.rig.lattice();
-  sim::Orientation best = lattice.lowest;
+world::Orientation aimAt(const world::World& world, const Eigen::Vector3d& point) {
+  const world::OrientationLattice& lattice = world.rig.lattice();
+  world::Orientation best = lattice.lowest;
   double best_cosine = -2;
   for (int i = 0; i < lattice.size(); ++i) {
     const Eigen::Vector3d seen = world.rig.worldFromCamera(lattice.at(i)).inverse() * point;
@@ -64,14 +64,14 @@ sim::Orientation aimAt(const sim::World& world, const Eigen::Vector3d& point) {
 
 }  // namespace
 
-core::Image drawStep(const sim::World& world, const PlayedStep& step, const PictureStyle& style) {
-  sim::Rasterizer rasterizer(world, style.size);
+core::Image drawStep(const world::World& world, const PlayedStep& step, const PictureStyle& style) {
+  render::Rasterizer rasterizer(world, style.size);
   return draw(rasterizer, world, step, style);
 }
 
-core::Image drawEpisode(const sim::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style) {
+core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style) {
   constexpr int kSpread = 5;  // steps between two images where nothing is taken
-  sim::Rasterizer rasterizer(world, style.size);
+  render::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool last = i + 1 == steps.size();
@@ -81,8 +81,8 @@ core::Image drawEpisode(const sim::World& world, const std::vector<PlayedStep>& 
   return sheet(images);
 }
 
-core::Image drawObjects(const sim::World& world, const PictureStyle& style) {
-  sim::Rasterizer rasterizer(world, style.size);
+core::Image drawObjects(const world::World& world, const PictureStyle& style) {
+  render::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
   for (int item = 0; item < world.objects.size(); ++item) {
     PlayedStep step;

@@ -22,13 +22,13 @@ struct PictureStyle {
   bool annotate;  ///< crosshair circle, request and action
 };
 
-core::Image drawStep(const sim::World& world, const PlayedStep& step, const PictureStyle& style);
+core::Image drawStep(const world::World& world, const PlayedStep& step, const PictureStyle& style);
 
 /// A sheet of images, row by row: the first step, the last one, and those between at which something was taken or that
 /// are evenly spread.
-core::Image drawEpisode(const sim::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style);
+core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style);
 
 /// A sheet with every object of the set alone on the counter, its name below.
-core::Image drawObjects(const sim::World& world, const PictureStyle& style);
+core::Image drawObjects(const world::World& world, const PictureStyle& style);
 
 }  // namespace early_fusion::cli

@@ -56,7 +56,7 @@ void writePng(const std::string& file, const core::Image& image) {
 }
 
 /// Plays the whole episode and keeps what each step looked like to the rules.
-std::vector<PlayedStep> play(const RenderOptions& options, const sim::World& world, const sim::Task& task) {
+std::vector<PlayedStep> play(const RenderOptions& options, const world::World& world, const sim::Task& task) {
   NamedAgent named = makeNamedAgent(options.policy, "argmax", options.seed, world);
   std::vector<PlayedStep> played;
   learning::RolloutRunner runner(world, task, options.seed);
@@ -68,7 +68,7 @@ std::vector<PlayedStep> play(const RenderOptions& options, const sim::World& wor
 }
 
 void render(const RenderOptions& options) {
-  const auto world = sim::loadWorld(options.world);
+  const auto world = world::loadWorld(options.world);
   const PictureStyle style{options.size, options.scale, options.annotate};
   if (options.picture == "objects") {
     writePng(options.out, drawObjects(*world, style));

@@ -18,7 +18,7 @@ void report(const learning::Progress& progress) {
 
 void train(const core::GivenOptions& given) {
   const learning::SessionOptions options = learning::resolveSessionOptions(given, "command line");
-  learning::TrainingSession session(options, sim::loadWorld(options.world));
+  learning::TrainingSession session(options, world::loadWorld(options.world));
   std::cerr << (session.resumed() ? "Going on with " : "Training ") << options.policy.kind << " ("
             << session.trainer().policy().parameters().values().size() << " parameters) on " << options.task
             << ", preset " << options.preset << ", in " << options.output << "\n";

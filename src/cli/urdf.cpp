@@ -3,7 +3,7 @@
 
 #include "command.h"
 #include "early_fusion/core/file.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::cli {
 
@@ -15,7 +15,7 @@ struct UrdfOptions {
 };
 
 void print(const UrdfOptions& options) {
-  const sim::WorldUrdfs urdfs = sim::findUrdfs(options.world);
+  const world::WorldUrdfs urdfs = world::findUrdfs(options.world);
   std::cout << core::readFile(options.part == "camera" ? urdfs.camera : urdfs.kitchen);
 }
 

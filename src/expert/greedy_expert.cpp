@@ -24,12 +24,12 @@ struct Search {
 
 class Searcher {
  public:
-  Searcher(const sim::ConeTable& cone, sim::InstanceMask present, sim::Orientation from)
+  Searcher(const sim::ConeTable& cone, sim::InstanceMask present, world::Orientation from)
       : cone_(cone), present_(present), from_(from), nearest_now_(cone.nearest(from, present)) {}
 
   /// The cheapest ways to `instance`, where they cost no more than `best`, added to it; else `best` stays as it is.
   void search(int instance, Search& best) const {
-    for (sim::Orientation to : cone_.orientationsOf(instance)) {
+    for (world::Orientation to : cone_.orientationsOf(instance)) {
       const int moves = std::abs(to.pan - from_.pan) + std::abs(to.tilt - from_.tilt);
       if (moves + 1 > best.steps) continue;
       int occluders = 0;
@@ -50,7 +50,7 @@ class Searcher {
  private:
   /// An occluder can be removed from wherever it is the nearest: here too, if it must go anyway. It is never a
   /// requested one, which would itself be cheaper to reach.
-  ActionSet firstActions(sim::Orientation to, bool occluded_by_nearest_now, int steps) const {
+  ActionSet firstActions(world::Orientation to, bool occluded_by_nearest_now, int steps) const {
     if (steps == 1) return bit(Action::kCollect);
     ActionSet actions = occluded_by_nearest_now ? bit(Action::kRemove) : ActionSet{0};
     if (to.pan > from_.pan) actions |= bit(Action::kPanLeft);
@@ -62,7 +62,7 @@ class Searcher {
 
   const sim::ConeTable& cone_;
   sim::InstanceMask present_;
-  sim::Orientation from_;
+  world::Orientation from_;
   int nearest_now_;
 };
 
@@ -83,7 +83,7 @@ sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, s
 }
 
 Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::InstanceMask present,
-               sim::Orientation orientation) {
+               world::Orientation orientation) {
   const Searcher searcher(cone, present, orientation);
   Search best;
   for (sim::InstanceMask rest = wanted; rest != 0; rest &= rest - 1) searcher.search(lowest(rest), best);
@@ -92,12 +92,12 @@ Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::Instan
 }
 
 Label label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-            sim::Orientation orientation, const core::Request& request) {
+            world::Orientation orientation, const core::Request& request) {
   return labelFor(cone, wantedInstances(instances, present, request), present, orientation);
 }
 
 Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                sim::Orientation orientation, const core::Request& request) {
+                world::Orientation orientation, const core::Request& request) {
   Decision decision;
   const sim::InstanceMask wanted = wantedInstances(instances, present, request);
   const Label label = labelFor(cone, wanted, present, orientation);

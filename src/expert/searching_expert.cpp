@@ -15,9 +15,9 @@ constexpr std::size_t kOccluderSize = 60;  // orientations: some 9 by 9 degrees,
 /// How many steps from the optical axis an object is in view.
 int reach(const sim::ConeTable& cone) { return cone.viewSteps() - kRimSteps; }
 
-Action search(const sim::ConeTable& cone, sim::Orientation orientation, Heading heading) {
-  const sim::Orientation lowest = cone.lattice().lowest, highest = cone.lattice().highest;
-  const sim::Orientation middle{(lowest.pan + highest.pan) / 2, (lowest.tilt + highest.tilt) / 2};
+Action search(const sim::ConeTable& cone, world::Orientation orientation, Heading heading) {
+  const world::Orientation lowest = cone.lattice().lowest, highest = cone.lattice().highest;
+  const world::Orientation middle{(lowest.pan + highest.pan) / 2, (lowest.tilt + highest.tilt) / 2};
   const Heading nearer_end = orientation.pan > middle.pan ? Heading::kLeft : Heading::kRight;
   const Heading farther_end = orientation.pan > middle.pan ? Heading::kRight : Heading::kLeft;
   if (heading == Heading::kStart) heading = nearer_end;
@@ -48,15 +48,15 @@ Heading headingOver(const std::vector<int>& pans) {
   return seen < core::kStackedFrames ? Heading::kStart : Heading::kNone;
 }
 
-bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation) {
-  const std::vector<sim::Orientation>& orientations = cone.orientationsOf(instance);
-  return std::any_of(orientations.begin(), orientations.end(), [&](sim::Orientation other) {
+bool isInView(const sim::ConeTable& cone, int instance, world::Orientation orientation) {
+  const std::vector<world::Orientation>& orientations = cone.orientationsOf(instance);
+  return std::any_of(orientations.begin(), orientations.end(), [&](world::Orientation other) {
     return std::max(std::abs(other.pan - orientation.pan), std::abs(other.tilt - orientation.tilt)) <= reach(cone);
   });
 }
 
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                     sim::Orientation orientation, Heading heading, const core::Request& request) {
+                     world::Orientation orientation, Heading heading, const core::Request& request) {
   const sim::InstanceMask wanted = wantedInstances(instances, present, request);
   sim::InstanceMask in_view = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {

@@ -13,17 +13,17 @@ constexpr int kLockstep = 10;
 }  // namespace
 
 struct RolloutRunner::LockstepEpisode {
-  LockstepEpisode(const sim::World& world, const sim::EpisodeKey& key, TrainingExpert training_expert,
-                  sim::Rasterizer& own_rasterizer)
+  LockstepEpisode(const world::World& world, const sim::EpisodeKey& key, TrainingExpert training_expert,
+                  render::Rasterizer& own_rasterizer)
       : episode(world, key), recorder(key, episode, training_expert), rasterizer(own_rasterizer) {}
 
   sim::Episode episode;
   TrajectoryRecorder recorder;
-  sim::Rasterizer& rasterizer;
+  render::Rasterizer& rasterizer;
   core::Image image;
 };
 
-RolloutRunner::RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+RolloutRunner::RolloutRunner(const world::World& world, const sim::Task& task, std::uint64_t seed,
                              TrainingExpert training_expert)
     : world_(world), task_(task), seed_(seed), training_expert_(training_expert) {
   for (int i = 0; i < kLockstep; ++i) rasterizers_.emplace_back(world, world.options.image_size);

@@ -29,7 +29,8 @@ nlohmann::ordered_json sceneJson(const core::Vocabulary& vocabulary, const sim::
 
 }  // namespace
 
-std::string traceLine(const sim::World& world, std::uint64_t episode, const sim::Episode& before, core::Action action) {
+std::string traceLine(const world::World& world, std::uint64_t episode, const sim::Episode& before,
+                      core::Action action) {
   const core::Vocabulary& vocabulary = world.objects.vocabulary();
   const std::vector<sim::Instance>& instances = before.setup().instances;
   const sim::EpisodeState& state = before.state();

@@ -20,7 +20,7 @@ constexpr char kCheckpoint[] = "checkpoint.safetensors";
 // Keys of a checkpoint's metadata.
 constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
 constexpr char kTask[] = "session.task";        // sim::Task as YAML
-constexpr char kWorld[] = "session.world";      // sim::WorldOptions as YAML
+constexpr char kWorld[] = "session.world";      // world::WorldOptions as YAML
 constexpr char kElapsed[] = "session.elapsed_sec";
 constexpr char kCurve[] = "session.curve";  // curve.csv
 
@@ -34,7 +34,7 @@ std::string learningOptions(SessionOptions options) {
 
 /// What must be the same when a session is resumed: YAML texts by their metadata keys.
 std::array<std::pair<const char*, std::string>, 3> settings(const SessionOptions& options, sim::Task task,
-                                                            sim::WorldOptions world) {
+                                                            world::WorldOptions world) {
   return {{{kOptions, learningOptions(options)}, {kTask, task.options().toYaml()}, {kWorld, world.options().toYaml()}}};
 }
 
@@ -74,7 +74,7 @@ double parseSeconds(const std::string& text, const std::string& source) {
 
 }  // namespace
 
-TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const sim::World> world)
+TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
   if (options_.seed == kHeldOutSeed) {

@@ -41,12 +41,12 @@ sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_
   return info;
 }
 
-sensor_msgs::JointState jointStateMessage(const sim::CameraRig& rig, sim::Orientation orientation,
+sensor_msgs::JointState jointStateMessage(const world::CameraRig& rig, world::Orientation orientation,
                                           const std_msgs::Header& header) {
   sensor_msgs::JointState message;
   message.header.stamp = header.stamp;
   message.name = {rig.panJoint(), rig.tiltJoint()};
-  message.position = {orientation.pan * sim::kStepRad, orientation.tilt * sim::kStepRad};
+  message.position = {orientation.pan * world::kStepRad, orientation.tilt * world::kStepRad};
   return message;
 }
 
@@ -105,7 +105,8 @@ EpisodeResult episodeResultMessage(const sim::Episode& episode, const sim::Episo
   return message;
 }
 
-SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const sim::OrientationLattice& lattice) {
+SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary,
+                      const world::OrientationLattice& lattice) {
   if (scene.instances.size() > sim::kMaxInstances) {
     throw core::Error("scene: " + std::to_string(scene.instances.size()) + " instances; at most " +
                       std::to_string(sim::kMaxInstances) + " are allowed");

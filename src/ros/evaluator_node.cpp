@@ -36,7 +36,7 @@ core::OptionSet EvaluatorNode::Options::options() {
 
 EvaluatorNode::EvaluatorNode(const Options& options)
     : options_(options),
-      world_(sim::loadWorld(options.world)),
+      world_(world::loadWorld(options.world)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) {
         status.add("waits for", client_.waitsFor());
         status.addf("episodes", "%zu of %d", evaluation_.outcomes.size(), options_.episodes);

@@ -24,7 +24,7 @@ geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
   return pose;
 }
 
-visualization_msgs::Marker meshMarker(const sim::Object& object, const Eigen::Isometry3d& world_from_object) {
+visualization_msgs::Marker meshMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
   visualization_msgs::Marker marker;
   marker.ns = "objects";
   marker.type = visualization_msgs::Marker::MESH_RESOURCE;
@@ -38,7 +38,7 @@ visualization_msgs::Marker meshMarker(const sim::Object& object, const Eigen::Is
   return marker;
 }
 
-visualization_msgs::Marker nameMarker(const sim::Object& object, const Eigen::Isometry3d& world_from_object) {
+visualization_msgs::Marker nameMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
   const double top = object.mesh.bounds().max().z();
   visualization_msgs::Marker marker;
   marker.ns = "requested";
@@ -63,7 +63,7 @@ std::string meshUrl(const std::string& mesh_file) {
   return "file://" + path.string();
 }
 
-visualization_msgs::MarkerArray objectMarkers(const sim::World& world, const sim::Episode& episode,
+visualization_msgs::MarkerArray objectMarkers(const world::World& world, const sim::Episode& episode,
                                               const std_msgs::Header& header) {
   visualization_msgs::MarkerArray array;
   array.markers.emplace_back();
@@ -72,7 +72,7 @@ visualization_msgs::MarkerArray objectMarkers(const sim::World& world, const sim
   const std::vector<sim::Instance>& instances = episode.setup().instances;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     if (((episode.state().present >> i) & 1) == 0) continue;
-    const sim::Object& object = world.objects[instances[i].item];
+    const world::Object& object = world.objects[instances[i].item];
     const Eigen::Isometry3d world_from_object = sim::worldFromObject(world, instances[i]);
     array.markers.push_back(meshMarker(object, world_from_object));
     array.markers.back().id = static_cast<int>(i);

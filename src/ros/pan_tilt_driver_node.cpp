@@ -17,23 +17,23 @@ namespace {
 constexpr char kPanCommandTopic[] = "pan_position_controller/command";
 constexpr char kTiltCommandTopic[] = "tilt_position_controller/command";
 
-sim::CameraRig loadRig(const PanTiltDriverNode::Options& options) {
+world::CameraRig loadRig(const PanTiltDriverNode::Options& options) {
   const std::string urdf = options.urdf.empty() ? core::shareFolder() + "/urdf/pan_tilt_camera.urdf" : options.urdf;
-  return sim::CameraRig::load(urdf, options.pan_joint, options.tilt_joint, options.optical_frame);
+  return world::CameraRig::load(urdf, options.pan_joint, options.tilt_joint, options.optical_frame);
 }
 
 /// The angle of one joint in steps, matched by name.
 std::optional<int> stepsOf(const sensor_msgs::JointState& states, const std::string& joint) {
   for (std::size_t i = 0; i < states.name.size() && i < states.position.size(); ++i) {
     if (states.name[i] != joint || !std::isfinite(states.position[i])) continue;
-    return static_cast<int>(std::lround(states.position[i] / sim::kStepRad));
+    return static_cast<int>(std::lround(states.position[i] / world::kStepRad));
   }
   return std::nullopt;
 }
 
 std_msgs::Float64 angleMessage(int steps) {
   std_msgs::Float64 message;
-  message.data = steps * sim::kStepRad;
+  message.data = steps * world::kStepRad;
   return message;
 }
 
@@ -74,7 +74,7 @@ void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
   const std::optional<int> pan = stepsOf(states, rig_.panJoint());
   const std::optional<int> tilt = stepsOf(states, rig_.tiltJoint());
   if (!pan || !tilt) return;
-  const sim::OrientationLattice& lattice = rig_.lattice();
+  const world::OrientationLattice& lattice = rig_.lattice();
   target_ = {std::clamp(*pan, lattice.lowest.pan, lattice.highest.pan),
              std::clamp(*tilt, lattice.lowest.tilt, lattice.highest.tilt)};
 }
@@ -92,7 +92,7 @@ void PanTiltDriverNode::onAction(const Action& message) {
   }
   try {
     const core::Action action = core::actionFromName(message.name);
-    const sim::Orientation moved = sim::turned(*target_, action);
+    const world::Orientation moved = world::turned(*target_, action);
     if (moved == *target_) return;
     if (!rig_.lattice().contains(moved)) return health_.count("moves at a joint limit");
     target_ = moved;

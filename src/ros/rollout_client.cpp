@@ -16,7 +16,7 @@ constexpr double kStragglerSec = 1.0;  // after a goal's end, how long its last 
 
 }  // namespace
 
-RolloutClient::RolloutClient(::ros::NodeHandle& node, const sim::World& world, double stall_sec, Health& health)
+RolloutClient::RolloutClient(::ros::NodeHandle& node, const world::World& world, double stall_sec, Health& health)
     : world_(world),
       stall_(stall_sec),
       health_(health),

@@ -22,7 +22,7 @@ bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
 
 }  // namespace
 
-RolloutRecorder::RolloutRecorder(const sim::World& world, const RolloutPlan& plan)
+RolloutRecorder::RolloutRecorder(const world::World& world, const RolloutPlan& plan)
     : world_(world), plan_(plan), first_(firstEpisode(plan.goal)), next_(first_.number) {}
 
 bool RolloutRecorder::wants(const Scene& scene) const {

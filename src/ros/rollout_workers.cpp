@@ -7,12 +7,13 @@
 
 namespace early_fusion::nodes {
 
-RolloutWorkers::Worker::Worker(const std::string& name_space, const sim::World& world, double stall_sec, Health& health)
+RolloutWorkers::Worker::Worker(const std::string& name_space, const world::World& world, double stall_sec,
+                               Health& health)
     : node(name_space),
       weights_publisher(node.advertise<Weights>(kWeightsTopic, 1, true)),
       client(node, world, stall_sec, health) {}
 
-RolloutWorkers::RolloutWorkers(int count, const sim::World& world, double stall_sec, Health& health) {
+RolloutWorkers::RolloutWorkers(int count, const world::World& world, double stall_sec, Health& health) {
   for (int i = 1; i <= count; ++i) {
     const std::string name_space = i == 1 ? "" : "worker_" + std::to_string(i);
     workers_.push_back(std::make_unique<Worker>(name_space, world, stall_sec, health));

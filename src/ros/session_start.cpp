@@ -20,7 +20,7 @@ std::unique_ptr<learning::TrainingSession> startSession(learning::SessionOptions
   bool started = false;
   const bool launched = ::ros::param::get(kStartedParameter, started);
   if (started) options.resume = true;
-  auto session = std::make_unique<learning::TrainingSession>(options, sim::loadWorld(options.world));
+  auto session = std::make_unique<learning::TrainingSession>(options, world::loadWorld(options.world));
   if (launched) ::ros::param::set(kStartedParameter, true);
   return session;
 }

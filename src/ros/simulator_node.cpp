@@ -23,7 +23,7 @@ core::OptionSet SimulatorNode::Options::options() {
 
 SimulatorNode::SimulatorNode(const Options& options)
     : options_(options),
-      world_(sim::loadWorld(options.world)),
+      world_(world::loadWorld(options.world)),
       free_run_{sim::loadTask(options.task), options.seed, 0},
       health_(
           [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); }),

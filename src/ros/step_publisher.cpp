@@ -17,7 +17,7 @@ constexpr int kEpisodeQueue = 64;
 
 }  // namespace
 
-StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim::World> world, double marker_rate_hz)
+StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const world::World> world, double marker_rate_hz)
     : world_(std::move(world)),
       rasterizer_(*world_, world_->options.image_size),
       marker_period_(1.0 / marker_rate_hz),

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "early_fusion/sim/placed_hull.h"
 #include "early_fusion/sim/silhouette.h"
+#include "early_fusion/world/placed_hull.h"
 
 namespace early_fusion::sim {
 
@@ -21,7 +21,7 @@ struct View {
   std::optional<Silhouette> outline;
 };
 
-View viewOf(const PlacedHull& hull, const Eigen::Vector3d& camera) {
+View viewOf(const world::PlacedHull& hull, const Eigen::Vector3d& camera) {
   View view;
   const Eigen::Vector3d to_center = hull.center() - camera;
   const double far = to_center.norm();
@@ -43,7 +43,7 @@ bool inCone(const View& view, const Eigen::Vector3d& axis) {
 /// the camera, that is once per scene.
 class Views {
  public:
-  Views(const World& world, const std::vector<Instance>& instances) {
+  Views(const world::World& world, const std::vector<Instance>& instances) {
     for (const Instance& instance : instances) {
       hulls_.emplace_back(world.objects[instance.item].hull, worldFromObject(world, instance));
     }
@@ -54,26 +54,26 @@ class Views {
     if (views_.empty() || (camera - camera_).norm() > kSamePlace) {
       camera_ = camera;
       views_.clear();
-      for (const PlacedHull& hull : hulls_) views_.push_back(viewOf(hull, camera));
+      for (const world::PlacedHull& hull : hulls_) views_.push_back(viewOf(hull, camera));
     }
     return views_;
   }
 
  private:
-  std::vector<PlacedHull> hulls_;
+  std::vector<world::PlacedHull> hulls_;
   Eigen::Vector3d camera_;
   std::vector<View> views_;
 };
 
-int viewStepsOf(const World& world) {
+int viewStepsOf(const world::World& world) {
   constexpr double kTolerance = 1e-6;  // steps
   const double half_fov = 0.5 * world.options.horizontal_fov_deg * M_PI / 180;
-  return static_cast<int>(half_fov / kStepRad + kTolerance);
+  return static_cast<int>(half_fov / world::kStepRad + kTolerance);
 }
 
 }  // namespace
 
-ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
+ConeTable::ConeTable(const world::World& world, const std::vector<Instance>& instances)
     : lattice_(world.rig.lattice()), view_steps_(viewStepsOf(world)), orientations_of_(instances.size()) {
   assert(instances.size() <= static_cast<std::size_t>(kMaxInstances));
   Views views(world, instances);
@@ -81,7 +81,7 @@ ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
   offsets_.reserve(lattice_.size() + 1);
   offsets_.push_back(0);
   for (int index = 0; index < lattice_.size(); ++index) {
-    const Orientation orientation = lattice_.at(index);
+    const world::Orientation orientation = lattice_.at(index);
     const Eigen::Isometry3d& world_from_camera = world.rig.worldFromCamera(orientation);
     const Eigen::Vector3d axis = world_from_camera.linear().col(2);
     const std::vector<View>& seen = views.from(world_from_camera.translation());
@@ -97,13 +97,13 @@ ConeTable::ConeTable(const World& world, const std::vector<Instance>& instances)
   }
 }
 
-ConeTable::Range ConeTable::at(Orientation orientation) const {
+ConeTable::Range ConeTable::at(world::Orientation orientation) const {
   assert(lattice_.contains(orientation));
   const int index = lattice_.index(orientation);
   return {nearest_first_.data() + offsets_[index], nearest_first_.data() + offsets_[index + 1]};
 }
 
-int ConeTable::nearest(Orientation orientation, InstanceMask present) const {
+int ConeTable::nearest(world::Orientation orientation, InstanceMask present) const {
   for (std::uint8_t instance : at(orientation)) {
     if ((present >> instance) & 1u) return instance;
   }
@@ -111,8 +111,8 @@ int ConeTable::nearest(Orientation orientation, InstanceMask present) const {
 }
 
 double ConeTable::exposure(int instance, InstanceMask present) const {
-  const std::vector<Orientation>& orientations = orientationsOf(instance);
-  const auto exposed = std::count_if(orientations.begin(), orientations.end(), [&](Orientation orientation) {
+  const std::vector<world::Orientation>& orientations = orientationsOf(instance);
+  const auto exposed = std::count_if(orientations.begin(), orientations.end(), [&](world::Orientation orientation) {
     return nearest(orientation, present) == instance;
   });
   return orientations.empty() ? 0 : static_cast<double>(exposed) / static_cast<double>(orientations.size());

@@ -11,7 +11,7 @@ InstanceMask allOf(std::size_t count) { return count >= 32 ? ~InstanceMask{0} : 
 
 }  // namespace
 
-Episode::Episode(const World& world, const Task& task, EpisodeSetup setup)
+Episode::Episode(const world::World& world, const Task& task, EpisodeSetup setup)
     : setup_(std::move(setup)),
       cone_(std::make_shared<ConeTable>(world, setup_.instances)),
       steps_(task.steps),
@@ -28,7 +28,7 @@ void Episode::step(core::Action action) {
     const int instance = cone_->nearest(state_.orientation, state_.present);
     if (instance >= 0) take(instance, action == core::Action::kCollect);
   }
-  const Orientation moved = turned(state_.orientation, action);
+  const world::Orientation moved = world::turned(state_.orientation, action);
   if (cone_->lattice().contains(moved)) state_.orientation = moved;
   ++state_.step;
 }

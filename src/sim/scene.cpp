@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
-#include "early_fusion/sim/placed_hull.h"
+#include "early_fusion/world/placed_hull.h"
 
 namespace early_fusion::sim {
 
@@ -18,16 +18,16 @@ constexpr int kTriesPerScene = 50;
 /// Objects that stand already, and whether one more may stand beside them.
 class CounterTop {
  public:
-  explicit CounterTop(const World& world) : world_(world) {}
+  explicit CounterTop(const world::World& world) : world_(world) {}
 
   /// Keeps the instance when it is clear of all others and of the kitchen, and does not overhang too far.
   bool place(const Instance& instance) {
-    PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
+    world::PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
     if (overhang(hull) > world_.options.max_overhang) return false;
     for (const auto& obstacle : world_.obstacles) {
       if (tooNear(hull, *obstacle)) return false;
     }
-    for (const PlacedHull& other : hulls_) {
+    for (const world::PlacedHull& other : hulls_) {
       if (tooNear(hull, other)) return false;
     }
     hulls_.push_back(std::move(hull));
@@ -38,25 +38,25 @@ class CounterTop {
   static constexpr double kTouching = 1e-6;  // [m]; with no clearance asked for, objects still must not overlap
 
   /// How far a hull reaches over an edge of the counter's top [m]; negative where it does not.
-  double overhang(const PlacedHull& hull) const {
-    const HorizontalRectangle& top = world_.counter_top;
+  double overhang(const world::PlacedHull& hull) const {
+    const world::HorizontalRectangle& top = world_.counter_top;
     const Eigen::AlignedBox3d& box = hull.bounds();
     return std::max(
         {top.min_x - box.min().x(), box.max().x() - top.max_x, top.min_y - box.min().y(), box.max().y() - top.max_y});
   }
 
-  bool tooNear(const PlacedHull& hull, const PlacedHull& other) const {
+  bool tooNear(const world::PlacedHull& hull, const world::PlacedHull& other) const {
     const double clearance = std::max(world_.options.clearance, kTouching);
     return hull.bounds().exteriorDistance(other.bounds()) < clearance && hull.distanceTo(other) < clearance;
   }
 
-  const World& world_;
-  std::vector<PlacedHull> hulls_;
+  const world::World& world_;
+  std::vector<world::PlacedHull> hulls_;
 };
 
 /// Places as many of `items` as fit, in their order.
-std::vector<Instance> placeAll(const World& world, const std::vector<int>& items, core::Random& random) {
-  const HorizontalRectangle& area = world.placement;
+std::vector<Instance> placeAll(const world::World& world, const std::vector<int>& items, core::Random& random) {
+  const world::HorizontalRectangle& area = world.placement;
   CounterTop counter(world);
   std::vector<Instance> placed;
   for (int item : items) {
@@ -75,7 +75,7 @@ std::vector<Instance> placeAll(const World& world, const std::vector<int>& items
   return placed;
 }
 
-std::vector<Instance> sampleInstances(const World& world, const Task& task, core::Random& random) {
+std::vector<Instance> sampleInstances(const world::World& world, const Task& task, core::Random& random) {
   const int more = task.mostInstances() - task.instances;
   const int count = task.instances + (more > 0 ? random.below(more + 1) : 0);
   std::size_t most = 0;
@@ -97,21 +97,21 @@ std::vector<Instance> sampleInstances(const World& world, const Task& task, core
 
 }  // namespace
 
-Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance) {
+Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& instance) {
   return Eigen::Translation3d(instance.x, instance.y, world.placement.z) *
          Eigen::AngleAxisd(instance.theta, Eigen::Vector3d::UnitZ());
 }
 
-std::vector<ObjectPose> presentObjects(const World& world, const std::vector<Instance>& instances,
-                                       InstanceMask present) {
-  std::vector<ObjectPose> objects;
+std::vector<world::ObjectPose> presentObjects(const world::World& world, const std::vector<Instance>& instances,
+                                              InstanceMask present) {
+  std::vector<world::ObjectPose> objects;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     if (present >> i & 1u) objects.push_back({instances[i].item, worldFromObject(world, instances[i])});
   }
   return objects;
 }
 
-EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random) {
+EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random) {
   task.validate("task '" + task.name + "'");
   EpisodeSetup setup;
   setup.instances = sampleInstances(world, task, random);
@@ -120,12 +120,12 @@ EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& r
   random.shuffle(order);
   for (int i = 0; i < task.requested; ++i) setup.request.push_back(setup.instances[order[i]].item);
   std::sort(setup.request.begin(), setup.request.end());
-  const OrientationLattice& lattice = world.rig.lattice();
+  const world::OrientationLattice& lattice = world.rig.lattice();
   setup.orientation = lattice.at(random.below(lattice.size()));
   return setup;
 }
 
-EpisodeSetup sampleEpisode(const World& world, const EpisodeKey& key) {
+EpisodeSetup sampleEpisode(const world::World& world, const EpisodeKey& key) {
   core::Random random(key.seed, {core::kEpisodeStream, key.number});
   return sampleEpisode(world, key.task, random);
 }

@@ -27,8 +27,8 @@ struct Statistics {
   int steps = 0, idle = 0, removed = 0, wanted = 0, out_of_view = 0, occluded = 0, unreachable = 0;
 };
 
-bool inView(const sim::World& world, const sim::Instance& instance, sim::Orientation orientation) {
-  const sim::Object& object = world.objects[instance.item];
+bool inView(const world::World& world, const sim::Instance& instance, world::Orientation orientation) {
+  const world::Object& object = world.objects[instance.item];
   const Eigen::Vector3d middle(0, 0, 0.5 * object.mesh.bounds().max().z());
   const Eigen::Vector3d seen =
       world.rig.worldFromCamera(orientation).inverse() * (sim::worldFromObject(world, instance) * middle);
@@ -36,7 +36,7 @@ bool inView(const sim::World& world, const sim::Instance& instance, sim::Orienta
   return std::max(std::abs(seen.x()), std::abs(seen.y())) < reach;
 }
 
-void countInstances(const sim::World& world, const sim::Episode& episode, Statistics& statistics) {
+void countInstances(const world::World& world, const sim::Episode& episode, Statistics& statistics) {
   const sim::EpisodeSetup& setup = episode.setup();
   for (std::size_t i = 0; i < setup.instances.size(); ++i) {
     const auto& orientations = episode.cone().orientationsOf(static_cast<int>(i));
@@ -45,11 +45,11 @@ void countInstances(const sim::World& world, const sim::Episode& episode, Statis
     ++statistics.wanted;
     statistics.out_of_view += !inView(world, setup.instances[i], setup.orientation);
     statistics.occluded += std::any_of(orientations.begin(), orientations.end(),
-                                       [&](sim::Orientation o) { return *episode.cone().at(o).begin() != i; });
+                                       [&](world::Orientation o) { return *episode.cone().at(o).begin() != i; });
   }
 }
 
-Statistics play(const sim::World& world, const sim::Task& task) {
+Statistics play(const world::World& world, const sim::Task& task) {
   Statistics statistics;
   for (std::uint64_t number = 0; number < kEpisodes; ++number) {
     sim::Episode episode(world, {task, kSeed, number});
@@ -71,7 +71,7 @@ Statistics play(const sim::World& world, const sim::Task& task) {
 class ShippedWorld : public testing::TestWithParam<Ceiling> {};
 
 TEST_P(ShippedWorld, IsAsWideAndClutteredAsTheExpertCanManage) {
-  static const std::shared_ptr<const sim::World> world = sim::loadWorld("");
+  static const std::shared_ptr<const world::World> world = world::loadWorld("");
   const Statistics statistics = play(*world, sim::loadTask(GetParam().task));
   const double idle = static_cast<double>(statistics.idle) / statistics.steps;
   const double out_of_view = static_cast<double>(statistics.out_of_view) / statistics.wanted;

@@ -10,7 +10,7 @@
 #include <new>
 #include <tuple>
 
-#include "../sim/test_world.h"
+#include "world/test_world.h"
 
 namespace {
 long allocations = 0;
@@ -30,12 +30,12 @@ namespace early_fusion::expert {
 namespace {
 
 using core::Action;
-using sim::Orientation;
+using world::Orientation;
 
 enum Item { kBox, kCan, kCube, kPlate };
 
-const sim::World& world() {
-  static const std::shared_ptr<const sim::World> world = sim::testWorld();
+const world::World& world() {
+  static const std::shared_ptr<const world::World> world = world::testWorld();
   return *world;
 }
 
@@ -99,7 +99,7 @@ struct Scene {
 
 /// A crowded heap, so that much is hidden.
 Scene crowdedScene(core::Random& random, int count) {
-  sim::World heap = world();
+  world::World heap = world();
   heap.placement.min_y = -0.3;
   heap.placement.max_y = 0.3;
   sim::Task task;
@@ -108,7 +108,7 @@ Scene crowdedScene(core::Random& random, int count) {
 }
 
 State randomState(const Scene& scene, core::Random& random) {
-  const sim::OrientationLattice& lattice = scene.cone.lattice();
+  const world::OrientationLattice& lattice = scene.cone.lattice();
   const auto all = static_cast<sim::InstanceMask>((1u << scene.instances.size()) - 1);
   return {lattice.at(random.below(lattice.size())),
           all & static_cast<sim::InstanceMask>(random.next() | random.next())};

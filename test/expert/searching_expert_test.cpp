@@ -7,17 +7,17 @@
 #include <filesystem>
 #include <map>
 
-#include "../sim/test_world.h"
 #include "early_fusion/sim/episode.h"
+#include "world/test_world.h"
 
 namespace early_fusion::expert {
 namespace {
 
 using core::Action;
-using sim::Orientation;
+using world::Orientation;
 
-const sim::World& world() {
-  static const std::shared_ptr<const sim::World> world = sim::loadWorld("");
+const world::World& world() {
+  static const std::shared_ptr<const world::World> world = world::loadWorld("");
   return *world;
 }
 
@@ -59,17 +59,17 @@ TEST(SearchingExpert, TiltsBeforeItTurnsWhereFrontOrBackIsOutOfView) {
 }
 
 /// The shipped world, but for a text in its camera's or its own file.
-std::shared_ptr<const sim::World> worldWith(const std::string& name, const std::string& from, const std::string& to) {
-  const sim::TestFolder folder;
+std::shared_ptr<const world::World> worldWith(const std::string& name, const std::string& from, const std::string& to) {
+  const world::TestFolder folder;
   for (const char* file : {"config/world.yaml", "urdf/pan_tilt_camera.urdf"}) {
     const std::string path = core::shareFolder() + "/" + file;
     const std::string text = core::readFile(path);
-    folder.write(file, path.find(name) == std::string::npos ? text : sim::replaced(text, from, to));
+    folder.write(file, path.find(name) == std::string::npos ? text : world::replaced(text, from, to));
   }
   for (const char* file : {"config/objects.yaml", "urdf/kitchen.urdf", "meshes"}) {
     std::filesystem::create_symlink(core::shareFolder() + "/" + file, folder.path() + "/" + file);
   }
-  return sim::loadWorld(folder.path() + "/config/world.yaml");
+  return world::loadWorld(folder.path() + "/config/world.yaml");
 }
 
 TEST(SearchingExpert, LooksFromEndToEndWhicheverWayTheCameraIsBuilt) {
@@ -85,7 +85,7 @@ TEST(SearchingExpert, LooksFromEndToEndWhicheverWayTheCameraIsBuilt) {
       std::vector<int> pans;
       for (int step = 0; step < 300; ++step) {
         pans.push_back(at.pan);
-        at = sim::turned(at, searchingLabel(cone, instances, 1, at, headingOver(pans), {0}).action);
+        at = world::turned(at, searchingLabel(cone, instances, 1, at, headingOver(pans), {0}).action);
         ASSERT_TRUE(cone.lattice().contains(at));
       }
       for (auto half = pans.begin(); half != pans.end(); half += 150) {

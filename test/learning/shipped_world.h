@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::learning {
 
 /// The package's world, loaded once a test program.
-inline const sim::World& shippedWorld() {
-  static const std::shared_ptr<const sim::World> world = sim::loadWorld("");
+inline const world::World& shippedWorld() {
+  static const std::shared_ptr<const world::World> world = world::loadWorld("");
   return *world;
 }
 

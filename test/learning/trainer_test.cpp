@@ -7,6 +7,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/learning/training_samples.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "synthetic_trajectories.h"
 
 namespace early_fusion::learning {

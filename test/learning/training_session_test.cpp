@@ -30,8 +30,8 @@ class TrainingSessionTest : public testing::Test {
                                  "test");
   }
 
-  static std::shared_ptr<const sim::World> world() {
-    static const std::shared_ptr<const sim::World> world = sim::loadWorld("");
+  static std::shared_ptr<const world::World> world() {
+    static const std::shared_ptr<const world::World> world = world::loadWorld("");
     return world;
   }
 
@@ -66,7 +66,7 @@ TEST_F(TrainingSessionTest, RunsToAScoreAndTheSameSeedGivesTheSameWeights) {
 }
 
 TEST_F(TrainingSessionTest, WeightsSayTheFieldOfViewOfItsWorld) {
-  const auto narrow = std::make_shared<sim::World>(*world());
+  const auto narrow = std::make_shared<world::World>(*world());
   narrow->options.horizontal_fov_deg = 45;
   EXPECT_EQ(TrainingSession(options("narrow"), narrow).weights().metadata.at("horizontal_fov_deg"), "45");
 }
@@ -134,7 +134,7 @@ TEST_F(TrainingSessionTest, RefusesToGoOnWithAnotherTaskOrWorldOfTheSameName) {
   }
   SessionOptions again = options("a");
   again.resume = true;
-  const auto error = [&](const std::shared_ptr<const sim::World>& world) -> std::string {
+  const auto error = [&](const std::shared_ptr<const world::World>& world) -> std::string {
     try {
       TrainingSession session(again, world);
     } catch (const core::Error& error) {
@@ -143,7 +143,7 @@ TEST_F(TrainingSessionTest, RefusesToGoOnWithAnotherTaskOrWorldOfTheSameName) {
     return "accepted";
   };
   EXPECT_EQ(error(world()), "accepted");
-  auto other = std::make_shared<sim::World>(*world());
+  auto other = std::make_shared<world::World>(*world());
   other->options.clearance = 0.02;
   EXPECT_NE(error(other).find("clearance = '0.005', not '0.02'"), std::string::npos) << error(other);
   core::writeFileAtomically(folder_ / "short.yaml", "{instances: 3, requested: 1, steps: 5}");

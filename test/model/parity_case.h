@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "early_fusion/core/random.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/policy_kinds.h"
 #include "policy_batches.h"
 
 namespace early_fusion::model {

@@ -27,7 +27,7 @@ class ConversionsTest : public testing::Test {
   }
 
   const SmallSession files_;
-  const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
+  const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   const sim::EpisodeKey key_{sim::loadTask("hard"), 5, 9};
   sim::Episode episode_{*world_, key_};
   std_msgs::Header header_;

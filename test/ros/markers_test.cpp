@@ -19,7 +19,7 @@ class MarkersTest : public testing::Test {
   }
 
   const SmallSession files_;
-  const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
+  const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   const sim::Task task_ = sim::loadTask("medium");
   sim::Episode episode_{*world_, {task_, 1, 0}};
 };
@@ -32,7 +32,7 @@ TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {
   for (const visualization_msgs::Marker& marker : array.markers) {
     if (marker.ns != "objects") continue;
     const sim::Instance& instance = episode_.setup().instances[marker.id];
-    const sim::Object& object = world_->objects[instance.item];
+    const world::Object& object = world_->objects[instance.item];
     EXPECT_EQ(marker.mesh_resource, meshUrl(object.mesh_file));
     // A corner of the file, through the marker's scale and pose, is the corner of the mesh in the world.
     const Eigen::Vector3d in_object = object.mesh.parts[0].vertices[0].position.cast<double>();

@@ -11,7 +11,7 @@
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/ros/topics.h"
-#include "early_fusion/sim/camera_rig.h"
+#include "early_fusion/world/camera_rig.h"
 #include "spin_until.h"
 
 namespace early_fusion::nodes {
@@ -101,8 +101,8 @@ TEST_F(RealCameraTest, TheServiceChangesWhatIsAskedFor) {
 }
 
 TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTheirLimits) {
-  const auto rig = sim::CameraRig::load(core::shareFolder() + "/urdf/pan_tilt_camera.urdf", "pan_joint", "tilt_joint",
-                                        "camera_optical_frame");
+  const auto rig = world::CameraRig::load(core::shareFolder() + "/urdf/pan_tilt_camera.urdf", "pan_joint", "tilt_joint",
+                                          "camera_optical_frame");
   std_msgs::Header header;
   act("PAN_LEFT", header);
   spinFor(0.2);
@@ -111,21 +111,21 @@ TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTh
   // The joints may be in any order, among others; the pan joint stands one step from its limit.
   sensor_msgs::JointState states;
   states.name = {"elbow", "tilt_joint", "pan_joint"};
-  states.position = {1.0, (rig.lattice().lowest.tilt + 3) * sim::kStepRad + 0.001,
-                     (rig.lattice().highest.pan - 1) * sim::kStepRad - 0.001};
+  states.position = {1.0, (rig.lattice().lowest.tilt + 3) * world::kStepRad + 0.001,
+                     (rig.lattice().highest.pan - 1) * world::kStepRad - 0.001};
   joint_publisher_.publish(states);
   spinFor(0.2);
   act("TILT_DOWN", header);
   ASSERT_TRUE(spinUntil([&] { return tilt_ && pan_; }));
-  EXPECT_NEAR(*tilt_, (rig.lattice().lowest.tilt + 4) * sim::kStepRad, 1e-9);
+  EXPECT_NEAR(*tilt_, (rig.lattice().lowest.tilt + 4) * world::kStepRad, 1e-9);
   act("PAN_LEFT", header);
-  const double limit = rig.lattice().highest.pan * sim::kStepRad;
+  const double limit = rig.lattice().highest.pan * world::kStepRad;
   ASSERT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit) < 1e-9; }));
   for (const char* name : {"PAN_LEFT", "COLLECT", "JUMP"}) act(name, header);
   spinFor(0.2);
   EXPECT_NEAR(*pan_, limit, 1e-9);
   act("PAN_RIGHT", header);
-  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + sim::kStepRad) < 1e-9; }));
+  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + world::kStepRad) < 1e-9; }));
 
   // An answer that comes when another image has been asked about is not carried out, the answer to that one is.
   const RequestConstPtr first = nextRequest();
@@ -135,7 +135,7 @@ TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTh
   spinFor(0.5);  // the driver has the requests over a connection of its own
   act("TILT_DOWN", first->header);
   act("PAN_RIGHT", second->header);
-  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + 2 * sim::kStepRad) < 1e-9; }));
+  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + 2 * world::kStepRad) < 1e-9; }));
   EXPECT_NEAR(*tilt_, tilt, 1e-9);
 }
 

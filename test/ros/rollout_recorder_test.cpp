@@ -5,8 +5,8 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/learning/agent.h"
 #include "early_fusion/learning/rollout.h"
+#include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/conversions.h"
-#include "early_fusion/sim/rasterizer.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {
@@ -86,9 +86,9 @@ class RolloutRecorderTest : public testing::Test {
   }
 
   const SmallSession files_;
-  const std::shared_ptr<const sim::World> world_ = sim::loadWorld(files_.world());
+  const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   sim::Task task_ = sim::loadTask(files_.task());
-  sim::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
+  render::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
   RolloutPlan plan_;
   std::unique_ptr<RolloutRecorder> recorder_;
   std::uint32_t stamp_ = 1;

@@ -51,7 +51,7 @@ class SessionTest : public testing::Test {
   static void SetUpTestSuite() {
     files_ = new SmallSession();
     const learning::SessionOptions options = learning::resolveSessionOptions(given("reference"), "test");
-    learning::TrainingSession session(options, sim::loadWorld(options.world));
+    learning::TrainingSession session(options, world::loadWorld(options.world));
     learning::runSession(session, [](const learning::Progress&) {});
   }
   static void TearDownTestSuite() { delete files_; }
@@ -199,7 +199,7 @@ TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
   ASSERT_TRUE(exists("scores.json")) << launched->output();
   EXPECT_NE(launched->output().find("agreement"), std::string::npos);
 
-  const auto world = sim::loadWorld(files_->world());
+  const auto world = world::loadWorld(files_->world());
   const auto policy = model::loadPolicy(nn::WeightsFile::read(path), path, "f32");
   const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kArgmax, learning::kHeldOutSeed);
   learning::RolloutRunner runner(*world, sim::loadTask(files_->task()), learning::kHeldOutSeed);

@@ -12,9 +12,9 @@
 
 #include <map>
 
+#include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/conversions.h"
 #include "early_fusion/ros/topics.h"
-#include "early_fusion/sim/rasterizer.h"
 #include "small_session.h"
 #include "spin_until.h"
 
@@ -91,7 +91,7 @@ class SimulatorNodeTest : public testing::Test {
   std::vector<EpisodeResultConstPtr> results_;
   std::string message_;
   const SmallSession files_;
-  const std::shared_ptr<const sim::World> world_ = sim::loadWorld("");
+  const std::shared_ptr<const world::World> world_ = world::loadWorld("");
 };
 
 TEST_F(SimulatorNodeTest, AStepIsOneStampOnFiveTopicsInTheRightFrames) {
@@ -118,14 +118,14 @@ TEST_F(SimulatorNodeTest, AStepIsOneStampOnFiveTopicsInTheRightFrames) {
   EXPECT_EQ(requests_[stamp]->episode, 5u);
   EXPECT_EQ(requests_[stamp]->items, scene.request);
   EXPECT_EQ(joints_[stamp]->name, (std::vector<std::string>{"pan_joint", "tilt_joint"}));
-  EXPECT_NEAR(joints_[stamp]->position[0], scene.pan * sim::kStepRad, 1e-12);
-  EXPECT_NEAR(joints_[stamp]->position[1], scene.tilt * sim::kStepRad, 1e-12);
+  EXPECT_NEAR(joints_[stamp]->position[0], scene.pan * world::kStepRad, 1e-12);
+  EXPECT_NEAR(joints_[stamp]->position[1], scene.tilt * world::kStepRad, 1e-12);
 }
 
 TEST_F(SimulatorNodeTest, TheImageIsTheRasterizersOfThatEpisode) {
   const sim::Task task = sim::loadTask("simple");
   const sim::Episode episode(*world_, {task, 3, 5});
-  sim::Rasterizer rasterizer(*world_, 128);
+  render::Rasterizer rasterizer(*world_, 128);
   core::Image expected;
   rasterizer.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
   rasterizer.render(world_->rig.worldFromCamera(episode.state().orientation), expected);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "early_fusion/sim/placed_hull.h"
-#include "test_world.h"
+#include "early_fusion/world/placed_hull.h"
+#include "world/test_world.h"
 
 namespace early_fusion::sim {
 namespace {
 
-std::vector<Instance> someInstances(const World& world, std::uint64_t seed, int count) {
+std::vector<Instance> someInstances(const world::World& world, std::uint64_t seed, int count) {
   Task task;
   task.instances = count;
   return sampleEpisode(world, {task, seed, 0}).instances;
@@ -18,7 +18,7 @@ std::vector<Instance> someInstances(const World& world, std::uint64_t seed, int 
 
 /// The smallest angle [rad] between the camera's axis and a hull, from a dense grid of points on all triangles of three
 /// of its corners, and on the rest of it, for hulls of few corners only.
-double smallestAngle(const PlacedHull& hull, const Eigen::Isometry3d& world_from_camera) {
+double smallestAngle(const world::PlacedHull& hull, const Eigen::Isometry3d& world_from_camera) {
   constexpr int kSamples = 16;
   const auto& corners = hull.corners();
   const std::size_t count = corners.size();
@@ -41,14 +41,14 @@ double smallestAngle(const PlacedHull& hull, const Eigen::Isometry3d& world_from
 }
 
 /// Checks a table against brute force at every orientation; boxes only, so that brute force stays quick.
-void expectExact(const World& world, std::vector<Instance> instances) {
+void expectExact(const world::World& world, std::vector<Instance> instances) {
   for (Instance& instance : instances) instance.item = instance.item % 2 == 0 ? 0 : 2;
   const ConeTable table(world, instances);
   int in = 0;
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    const PlacedHull hull(world.objects[instances[i].item].hull, worldFromObject(world, instances[i]));
+    const world::PlacedHull hull(world.objects[instances[i].item].hull, worldFromObject(world, instances[i]));
     for (int index = 0; index < table.lattice().size(); ++index) {
-      const Orientation orientation = table.lattice().at(index);
+      const world::Orientation orientation = table.lattice().at(index);
       const double angle = smallestAngle(hull, world.rig.worldFromCamera(orientation));
       if (std::abs(angle - kConeHalfAngleRad) < 0.005) continue;  // closer than the grid of points is fine
       const auto here = table.at(orientation);
@@ -61,16 +61,17 @@ void expectExact(const World& world, std::vector<Instance> instances) {
   EXPECT_GT(in, 100);
 }
 
-std::shared_ptr<const World> worldWithOffsetAxes() {
-  const TestFolder folder;
-  const std::string file = writeTestWorld(folder);
-  folder.write("rig.urdf", replaced(kRigUrdf, R"(type="revolute"><origin xyz="0 0 0"/><parent link="pan_link"/>)",
-                                    R"(type="revolute"><origin xyz="0.1 0 0.05"/><parent link="pan_link"/>)"));
-  return loadWorld(file);
+std::shared_ptr<const world::World> worldWithOffsetAxes() {
+  const world::TestFolder folder;
+  const std::string file = world::writeTestWorld(folder);
+  folder.write("rig.urdf",
+               world::replaced(world::kRigUrdf, R"(type="revolute"><origin xyz="0 0 0"/><parent link="pan_link"/>)",
+                               R"(type="revolute"><origin xyz="0.1 0 0.05"/><parent link="pan_link"/>)"));
+  return world::loadWorld(file);
 }
 
 TEST(ConeTable, AgreesWithBruteForce) {
-  const auto world = testWorld();
+  const auto world = world::testWorld();
   for (std::uint64_t seed = 0; seed < 2; ++seed) expectExact(*world, someInstances(*world, seed, 4));
 }
 
@@ -79,16 +80,16 @@ TEST(ConeTable, AgreesWithBruteForceWhereTurningMovesTheCamera) {
   expectExact(*world, someInstances(*world, 5, 4));
 }
 
-void expectNearestFirst(const World& world) {
+void expectNearestFirst(const world::World& world) {
   const std::vector<Instance> instances = someInstances(world, 7, 12);
   const ConeTable table(world, instances);
-  std::vector<PlacedHull> hulls;
+  std::vector<world::PlacedHull> hulls;
   for (const Instance& instance : instances) {
     hulls.emplace_back(world.objects[instance.item].hull, worldFromObject(world, instance));
   }
   int crowded = 0;
   for (int index = 0; index < table.lattice().size(); ++index) {
-    const Orientation orientation = table.lattice().at(index);
+    const world::Orientation orientation = table.lattice().at(index);
     const Eigen::Vector3d camera = world.rig.worldFromCamera(orientation).translation();
     double last = 0;
     int count = 0;
@@ -104,12 +105,12 @@ void expectNearestFirst(const World& world) {
 }
 
 TEST(ConeTable, OrdersByDistanceFromTheCamera) {
-  expectNearestFirst(*testWorld());
+  expectNearestFirst(*world::testWorld());
   expectNearestFirst(*worldWithOffsetAxes());
 }
 
 TEST(ConeTable, ListsTheSameByOrientationAndByInstance) {
-  const auto world = testWorld();
+  const auto world = world::testWorld();
   const std::vector<Instance> instances = someInstances(*world, 8, 12);
   const ConeTable table(*world, instances);
   std::size_t by_orientation = 0, by_instance = 0;
@@ -119,7 +120,7 @@ TEST(ConeTable, ListsTheSameByOrientationAndByInstance) {
   }
   for (std::size_t i = 0; i < instances.size(); ++i) {
     by_instance += table.orientationsOf(static_cast<int>(i)).size();
-    for (Orientation orientation : table.orientationsOf(static_cast<int>(i))) {
+    for (world::Orientation orientation : table.orientationsOf(static_cast<int>(i))) {
       const auto here = table.at(orientation);
       EXPECT_NE(std::find(here.begin(), here.end(), i), here.end());
     }
@@ -129,11 +130,11 @@ TEST(ConeTable, ListsTheSameByOrientationAndByInstance) {
 }
 
 TEST(ConeTable, SkipsInstancesThatAreGone) {
-  const auto world = testWorld();
+  const auto world = world::testWorld();
   // Straight ahead of the camera, one behind the other, and one far to the side.
   const std::vector<Instance> instances = {{0, 1.0, 0, 0}, {0, 0.7, 0, 0}, {2, 0.8, 0.5, 0}};
   const ConeTable table(*world, instances);
-  const Orientation ahead{0, 10};  // 20 degrees down: 0.98 m high at x = 1
+  const world::Orientation ahead{0, 10};  // 20 degrees down: 0.98 m high at x = 1
   EXPECT_EQ(table.nearest(ahead, 0b111), 1);
   EXPECT_EQ(table.nearest(ahead, 0b101), 0);
   EXPECT_EQ(table.nearest(ahead, 0b100), -1);
@@ -141,14 +142,14 @@ TEST(ConeTable, SkipsInstancesThatAreGone) {
 }
 
 TEST(ConeTable, ExposesWhatNothingStandsBefore) {
-  const auto world = testWorld();
+  const auto world = world::testWorld();
   const std::vector<Instance> instances = {{0, 1.0, 0, 0}, {0, 0.7, 0, 0}, {2, 0.8, 0.5, 0}};
   const ConeTable table(*world, instances);
   EXPECT_EQ(table.exposure(1, 0b111), 1);
   EXPECT_EQ(table.exposure(2, 0b111), 1);
   EXPECT_EQ(table.exposure(0, 0b101), 1);
   int before = 0;
-  for (Orientation orientation : table.orientationsOf(0)) before += table.nearest(orientation, 0b111) != 0;
+  for (world::Orientation orientation : table.orientationsOf(0)) before += table.nearest(orientation, 0b111) != 0;
   const double behind = table.exposure(0, 0b111);
   EXPECT_DOUBLE_EQ(behind, 1 - static_cast<double>(before) / table.orientationsOf(0).size());
   EXPECT_GT(behind, 0);  // its top shows over the other's
@@ -156,17 +157,17 @@ TEST(ConeTable, ExposesWhatNothingStandsBefore) {
 }
 
 TEST(ConeTable, ExposesNothingThatIsNowhereInTheCone) {
-  const ConeTable table(*testWorld(), {{0, -2.0, 0, 0}});  // behind the camera
+  const ConeTable table(*world::testWorld(), {{0, -2.0, 0, 0}});  // behind the camera
   EXPECT_EQ(table.exposure(0, 1), 0);
 }
 
 TEST(ConeTable, OfNoInstancesIsEmpty) {
-  const ConeTable table(*testWorld(), {});
+  const ConeTable table(*world::testWorld(), {});
   EXPECT_EQ(table.nearest({0, 10}, ~0u), -1);
 }
 
 TEST(ConeTable, HasACameraInsideAnObjectMeetItEverywhere) {
-  World world = *testWorld();
+  world::World world = *world::testWorld();
   world.placement.z = 1.3;
   const ConeTable table(world, {{0, 0, 0, 0}});
   EXPECT_EQ(static_cast<int>(table.orientationsOf(0).size()), table.lattice().size());

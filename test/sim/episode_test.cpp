@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "test_world.h"
+#include "world/test_world.h"
 
 namespace early_fusion::sim {
 namespace {
@@ -11,16 +11,16 @@ using core::Action;
 
 enum Item { kBox, kCan, kCube, kPlate };
 
-const World& world() {
-  static const std::shared_ptr<const World> world = testWorld();
+const world::World& world() {
+  static const std::shared_ptr<const world::World> world = world::testWorld();
   return *world;
 }
 
 /// A can in front of a box in front of a box, all straight ahead, and a cube out of reach to the left.
 const std::vector<Instance> kRow = {{kCan, 0.6, 0, 0}, {kBox, 0.75, 0, 0}, {kBox, 0.95, 0, 0}, {kCube, 0.7, 0.5, 0}};
-constexpr Orientation kAtRow{0, 14};  // 28 degrees down
+constexpr world::Orientation kAtRow{0, 14};  // 28 degrees down
 
-Episode makeEpisode(core::Request request, Orientation orientation = kAtRow, int steps = 48) {
+Episode makeEpisode(core::Request request, world::Orientation orientation = kAtRow, int steps = 48) {
   Task task;
   task.steps = steps;
   return Episode(world(), task, {kRow, std::move(request), orientation});
@@ -69,15 +69,15 @@ TEST(Episode, TakesNothingWhereNothingIs) {
 
 TEST(Episode, MovesByOneStep) {
   const auto after = [](Action action) { return played({kBox}, {action}).state().orientation; };
-  EXPECT_EQ(after(Action::kPanLeft), (Orientation{1, 14}));
-  EXPECT_EQ(after(Action::kPanRight), (Orientation{-1, 14}));
-  EXPECT_EQ(after(Action::kTiltUp), (Orientation{0, 13}));
-  EXPECT_EQ(after(Action::kTiltDown), (Orientation{0, 15}));
+  EXPECT_EQ(after(Action::kPanLeft), (world::Orientation{1, 14}));
+  EXPECT_EQ(after(Action::kPanRight), (world::Orientation{-1, 14}));
+  EXPECT_EQ(after(Action::kTiltUp), (world::Orientation{0, 13}));
+  EXPECT_EQ(after(Action::kTiltDown), (world::Orientation{0, 15}));
   EXPECT_EQ(after(Action::kIdle), kAtRow);
 }
 
 TEST(Episode, StaysAtAJointLimitAndSpendsTheStep) {
-  const OrientationLattice& lattice = world().rig.lattice();
+  const world::OrientationLattice& lattice = world().rig.lattice();
   Episode low = makeEpisode({kBox}, lattice.lowest);
   low.step(Action::kPanRight);
   low.step(Action::kTiltUp);

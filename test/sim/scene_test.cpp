@@ -7,14 +7,14 @@
 #include <map>
 #include <set>
 
-#include "early_fusion/sim/placed_hull.h"
-#include "test_world.h"
+#include "early_fusion/world/placed_hull.h"
+#include "world/test_world.h"
 
 namespace early_fusion::sim {
 namespace {
 
-const World& world() {
-  static const std::shared_ptr<const World> world = testWorld();
+const world::World& world() {
+  static const std::shared_ptr<const world::World> world = world::testWorld();
   return *world;
 }
 
@@ -32,19 +32,19 @@ TEST(Scene, StandsAnInstanceOnTheCounterTurnedAboutZ) {
 
 TEST(Scene, TellsThePosesOfTheInstancesThatArePresent) {
   const std::vector<Instance> instances = {{0, 0.7, -0.2, 1}, {1, 0.8, 0, 2}, {2, 0.9, 0.2, 3}};
-  const std::vector<ObjectPose> objects = presentObjects(world(), instances, 0b101u);
+  const std::vector<world::ObjectPose> objects = presentObjects(world(), instances, 0b101u);
   ASSERT_EQ(objects.size(), 2u);
-  EXPECT_TRUE(objects[0] == (ObjectPose{0, worldFromObject(world(), instances[0])}));
-  EXPECT_TRUE(objects[1] == (ObjectPose{2, worldFromObject(world(), instances[2])}));
+  EXPECT_TRUE(objects[0] == (world::ObjectPose{0, worldFromObject(world(), instances[0])}));
+  EXPECT_TRUE(objects[1] == (world::ObjectPose{2, worldFromObject(world(), instances[2])}));
   EXPECT_TRUE(presentObjects(world(), instances, 0).empty());
 }
 
 TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
-  const HorizontalRectangle& area = world().placement;
+  const world::HorizontalRectangle& area = world().placement;
   for (std::uint64_t episode = 0; episode < 100; ++episode) {
     const EpisodeSetup setup = sampleEpisode(world(), {makeTask(10, 3), 1, episode});
     ASSERT_EQ(setup.instances.size(), 10u);
-    std::vector<PlacedHull> hulls;
+    std::vector<world::PlacedHull> hulls;
     for (const Instance& instance : setup.instances) {
       EXPECT_TRUE(instance.x >= area.min_x && instance.x <= area.max_x && instance.y >= area.min_y &&
                   instance.y <= area.max_y);
@@ -57,22 +57,22 @@ TEST(Scene, KeepsCentresInTheAreaAndHullsApart) {
 }
 
 /// All vertices of an instance's mesh, in the world [m].
-std::vector<Eigen::Vector3d> verticesOf(const World& world, const Instance& instance) {
+std::vector<Eigen::Vector3d> verticesOf(const world::World& world, const Instance& instance) {
   std::vector<Eigen::Vector3d> vertices;
   const Eigen::Isometry3d pose = worldFromObject(world, instance);
-  for (const MeshPart& part : world.objects[instance.item].mesh.parts) {
-    for (const Vertex& vertex : part.vertices) vertices.push_back(pose * vertex.position.cast<double>());
+  for (const world::MeshPart& part : world.objects[instance.item].mesh.parts) {
+    for (const world::Vertex& vertex : part.vertices) vertices.push_back(pose * vertex.position.cast<double>());
   }
   return vertices;
 }
 
 TEST(Scene, OfTheShippedKitchenStandsInNoWallAndOverhangsNoMoreThanIsSaid) {
   constexpr double kHullShortfall = 0.0002, kBackSplash = 1.20;  // [m], x
-  const auto shipped = loadWorld("");
-  const HorizontalRectangle& top = shipped->counter_top;
+  const auto shipped = world::loadWorld("");
+  const world::HorizontalRectangle& top = shipped->counter_top;
   double farthest_back = 0, farthest_over = 0;
   for (std::uint64_t episode = 0; episode < 300; ++episode) {
-    for (const Instance& instance : sampleEpisode(*shipped, makeTask(12, 3), 1, episode).instances) {
+    for (const Instance& instance : sampleEpisode(*shipped, {makeTask(12, 3), 1, episode}).instances) {
       for (const Eigen::Vector3d& vertex : verticesOf(*shipped, instance)) {
         farthest_back = std::max(farthest_back, vertex.x());
         farthest_over =
@@ -87,21 +87,22 @@ TEST(Scene, OfTheShippedKitchenStandsInNoWallAndOverhangsNoMoreThanIsSaid) {
 }
 
 TEST(Scene, KeepsClearOfCollisionShapesThatRiseAboveTheCounter) {
-  const TestFolder folder;
-  const std::string file = writeTestWorld(folder);
+  const world::TestFolder folder;
+  const std::string file = world::writeTestWorld(folder);
   const std::string post =
       R"(<collision><origin xyz="0 0.2 1"/><geometry><cylinder radius="0.1" length="0.4"/></geometry></collision>)";
   const std::string trim =
       R"(<collision><origin xyz="0 0 0.895"/><geometry><box size="2 4 0.01"/></geometry></collision>)";
-  folder.write("kitchen.urdf", replaced(kKitchenUrdf, R"(<link name="world"/>)",
-                                        R"(<link name="world"/><link name="post">)" + post + trim +
-                                            R"(</link><joint name="post_joint" type="fixed"><origin xyz="0.8 0 0"/>
+  folder.write("kitchen.urdf",
+               world::replaced(world::kKitchenUrdf, R"(<link name="world"/>)",
+                               R"(<link name="world"/><link name="post">)" + post + trim +
+                                   R"(</link><joint name="post_joint" type="fixed"><origin xyz="0.8 0 0"/>
                                                <parent link="world"/><child link="post"/></joint>)"));
-  const auto with_post = loadWorld(file);
+  const auto with_post = world::loadWorld(file);
   ASSERT_EQ(with_post->obstacles.size(), 1u) << "the trim is level with the counter's top";
   double nearest = HUGE_VAL;
   for (std::uint64_t episode = 0; episode < 100; ++episode) {
-    for (const Instance& instance : sampleEpisode(*with_post, makeTask(8, 1), 1, episode).instances) {
+    for (const Instance& instance : sampleEpisode(*with_post, {makeTask(8, 1), 1, episode}).instances) {
       for (const Eigen::Vector3d& vertex : verticesOf(*with_post, instance)) {
         nearest = std::min(nearest, (vertex.head<2>() - Eigen::Vector2d(0.8, 0.2)).norm() - 0.1);
       }
@@ -194,17 +195,20 @@ TEST(Scene, IsTheSameForTheSameSeedAndEpisodeOnly) {
 }
 
 TEST(Scene, SaysHowManyFittedOnATooSmallCounter) {
-  World small = world();
+  world::World small = world();
   small.options.placement_width = 0.3;
   small.options.placement_depth = 0.3;
   small.placement = {0.6, 0.9, -0.15, 0.15, 0.9};
-  const std::string error = errorOf([&] { sampleEpisode(small, {makeTask(30, 1), 1, 1}); });
+  const std::string error = world::errorOf([&] { sampleEpisode(small, {makeTask(30, 1), 1, 1}); });
   EXPECT_NE(error.find("of 30 objects fit on the 0.3 x 0.3 m"), std::string::npos) << error;
   EXPECT_EQ(error.find("only 0 of"), std::string::npos) << error;
 }
 
 TEST(Scene, RefusesATaskThatAsksForTooMany) {
-  EXPECT_NE(errorOf([] { sampleEpisode(world(), {makeTask(2, 3), 1, 1}); }).find("requested is 3"), std::string::npos);
+  EXPECT_NE(world::errorOf([] {
+              sampleEpisode(world(), {makeTask(2, 3), 1, 1});
+            }).find("requested is 3"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "test_world.h"
+#include "world/test_world.h"
 
 namespace early_fusion::sim {
 namespace {
 
 std::string errorOfTask(const std::string& yaml) {
-  const TestFolder folder;
+  const world::TestFolder folder;
   const std::string file = folder.write("mine.yaml", yaml);
-  return errorOf([&] { loadTask(file); });
+  return world::errorOf([&] { loadTask(file); });
 }
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -41,19 +41,19 @@ TEST(Task, TheDefaultsAreThoseOfSimple) {
 }
 
 TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
-  const TestFolder folder;
+  const world::TestFolder folder;
   EXPECT_EQ(loadTask(folder.write("crowded.yaml", "instances: 20\n")).name, "crowded");
   EXPECT_EQ(loadTask(folder.write("crowded.yaml", "name: full\ninstances: 20\n")).name, "full");
 }
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
-  const std::string error = errorOf([] { loadTask("harder"); });
+  const std::string error = world::errorOf([] { loadTask("harder"); });
   EXPECT_TRUE(mentions(error, "'harder' is none of the known tasks (hard, medium, simple)")) << error;
-  EXPECT_TRUE(mentions(errorOf([] { loadTask(""); }), "'' is none of the known tasks"));
+  EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is none of the known tasks"));
 }
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {
-  EXPECT_TRUE(mentions(errorOf([] { loadTask("/no/such.yaml"); }), "/no/such.yaml"));
+  EXPECT_TRUE(mentions(world::errorOf([] { loadTask("/no/such.yaml"); }), "/no/such.yaml"));
   const std::pair<std::string, std::string> mistakes[] = {{"instances", "33"}, {"requested", "-1"}, {"steps", "0"}};
   for (const auto& [key, value] : mistakes) {
     const std::string error = errorOfTask(key + ": " + value + "\n");

@@ -35,7 +35,7 @@ struct Decision {
 /// label is the first of COLLECT, REMOVE, PAN_LEFT, PAN_RIGHT, TILT_UP, TILT_DOWN, so it is a function of the state. If
 /// no requested instance can be reached, the label is IDLE.
 Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                sim::Orientation orientation, const core::Request& request);
+                world::Orientation orientation, const core::Request& request);
 
 /// The present instances of the requested items.
 sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, sim::InstanceMask present,
@@ -50,11 +50,11 @@ struct Label {
 
 /// The greedy label. @param wanted the instances to collect.
 Label labelFor(const sim::ConeTable& cone, sim::InstanceMask wanted, sim::InstanceMask present,
-               sim::Orientation orientation);
+               world::Orientation orientation);
 
 /// The greedy label for the instances of the requested items.
 Label label(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-            sim::Orientation orientation, const core::Request& request);
+            world::Orientation orientation, const core::Request& request);
 
 Decision decide(const sim::Episode& episode);
 

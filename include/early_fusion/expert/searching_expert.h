@@ -13,7 +13,7 @@ enum class Heading { kStart, kNone, kLeft, kRight };
 Heading headingOver(const std::vector<int>& pans);
 
 /// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.
-bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orientation);
+bool isInView(const sim::ConeTable& cone, int instance, world::Orientation orientation);
 
 /// An expert that knows no more than a policy can: it goes greedily for the requested instances that are in view, and
 /// looks for the others.
@@ -27,6 +27,6 @@ bool isInView(const sim::ConeTable& cone, int instance, sim::Orientation orienta
 ///
 /// @param heading of the camera over the pictures that the policy sees.
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                     sim::Orientation orientation, Heading heading, const core::Request& request);
+                     world::Orientation orientation, Heading heading, const core::Request& request);
 
 }  // namespace early_fusion::expert

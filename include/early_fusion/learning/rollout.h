@@ -7,7 +7,7 @@
 
 #include "early_fusion/learning/agent.h"
 #include "early_fusion/learning/trajectory.h"
-#include "early_fusion/sim/rasterizer.h"
+#include "early_fusion/render/rasterizer.h"
 
 namespace early_fusion::learning {
 
@@ -17,7 +17,7 @@ namespace early_fusion::learning {
 class RolloutRunner {
  public:
   /// `world` must outlive the runner. @param task, seed of the episodes, which differ in number.
-  RolloutRunner(const sim::World& world, const sim::Task& task, std::uint64_t seed,
+  RolloutRunner(const world::World& world, const sim::Task& task, std::uint64_t seed,
                 TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   const sim::Task& task() const { return task_; }
@@ -45,11 +45,11 @@ class RolloutRunner {
   void playTogether(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
                     const std::function<void(Trajectory)>& finished);
 
-  const sim::World& world_;
+  const world::World& world_;
   sim::Task task_;
   std::uint64_t seed_;
   TrainingExpert training_expert_;
-  std::vector<sim::Rasterizer> rasterizers_;  // one an episode in lockstep: it keeps the shadow map
+  std::vector<render::Rasterizer> rasterizers_;  // one an episode in lockstep: it keeps the shadow map
   Observer observer_;
 };
 

@@ -5,7 +5,7 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/learning/training_options.h"
-#include "early_fusion/model/goal_policy.h"
+#include "early_fusion/model/policy_options.h"
 
 namespace early_fusion::learning {
 

@@ -13,7 +13,7 @@
 #include "early_fusion/learning/session_options.h"
 #include "early_fusion/learning/trainer.h"
 #include "early_fusion/sim/task.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::learning {
 
@@ -26,10 +26,10 @@ class TrainingSession {
   /// Starts a session. With options.resume, goes on from the output folder's checkpoint if there is one.
   /// @throws Error when the folder holds another session, the checkpoint is of other options or damaged, or the seed is
   /// that of the held-out episodes.
-  TrainingSession(const SessionOptions& options, std::shared_ptr<const sim::World> world);
+  TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
   const SessionOptions& options() const { return options_; }
-  const sim::World& world() const { return *world_; }
+  const world::World& world() const { return *world_; }
   /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
   /// The task of the episodes that it learns from.
@@ -68,7 +68,7 @@ class TrainingSession {
   std::string path(const std::string& name) const;
 
   SessionOptions options_;
-  std::shared_ptr<const sim::World> world_;
+  std::shared_ptr<const world::World> world_;
   sim::Task task_;
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;

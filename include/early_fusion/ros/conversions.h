@@ -13,7 +13,7 @@
 
 #include "early_fusion/core/image.h"
 #include "early_fusion/sim/episode.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::nodes {
 
@@ -26,7 +26,7 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
 /// The intrinsics of the rasterizer: no distortion, fx = fy, pixel centres at whole numbers (REP-104).
 sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header);
 
-sensor_msgs::JointState jointStateMessage(const sim::CameraRig& rig, sim::Orientation orientation,
+sensor_msgs::JointState jointStateMessage(const world::CameraRig& rig, world::Orientation orientation,
                                           const std_msgs::Header& header);
 
 Request requestMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
@@ -46,7 +46,7 @@ struct SceneState {
 };
 
 /// @throws core::Error naming the field, the value and what is allowed.
-SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const sim::OrientationLattice& lattice);
+SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const world::OrientationLattice& lattice);
 
 /// "mug, bowl", or "nothing".
 std::string itemList(const std::vector<std::string>& items);

@@ -36,7 +36,7 @@ class EvaluatorNode {
 
   Options options_;
   ::ros::NodeHandle node_;
-  std::shared_ptr<const sim::World> world_;
+  std::shared_ptr<const world::World> world_;
   Health health_;
   RolloutClient client_;
   learning::Evaluation evaluation_;

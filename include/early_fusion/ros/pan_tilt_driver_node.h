@@ -11,7 +11,7 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/health.h"
-#include "early_fusion/sim/camera_rig.h"
+#include "early_fusion/world/camera_rig.h"
 
 namespace early_fusion::nodes {
 
@@ -32,7 +32,7 @@ class PanTiltDriverNode {
     core::OptionSet options();
   };
 
-  /// @throws core::Error as sim::CameraRig::load().
+  /// @throws core::Error as world::CameraRig::load().
   explicit PanTiltDriverNode(const Options& options);
 
  private:
@@ -42,10 +42,10 @@ class PanTiltDriverNode {
 
   Options options_;
   ::ros::NodeHandle node_;
-  sim::CameraRig rig_;
+  world::CameraRig rig_;
   Health health_;
-  std::optional<sim::Orientation> target_;  // nothing is commanded before the joints are known
-  ::ros::Time latest_request_;              // the stamp of its image
+  std::optional<world::Orientation> target_;  // nothing is commanded before the joints are known
+  ::ros::Time latest_request_;                // the stamp of its image
   ::ros::Publisher pan_publisher_;
   ::ros::Publisher tilt_publisher_;
   ::ros::Subscriber action_subscriber_;

@@ -27,7 +27,7 @@ class RolloutClient {
  public:
   /// @param stall_sec after so long without a step of an episode asked for, it is asked for again.
   /// `world` and `health` must outlive the client.
-  RolloutClient(::ros::NodeHandle& node, const sim::World& world, double stall_sec, Health& health);
+  RolloutClient(::ros::NodeHandle& node, const world::World& world, double stall_sec, Health& health);
 
   /// Begins a plan as soon as a policy acts with its weights; a plan at hand is given up.
   /// @param on_trajectory called with each trajectory, in order.
@@ -59,7 +59,7 @@ class RolloutClient {
 
   using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request, Scene, Action>;
 
-  const sim::World& world_;
+  const world::World& world_;
   ::ros::WallDuration stall_;
   Health& health_;
 

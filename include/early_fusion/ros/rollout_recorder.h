@@ -13,7 +13,7 @@
 
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::nodes {
 
@@ -33,7 +33,7 @@ struct RolloutPlan {
 class RolloutRecorder {
  public:
   /// `world` must outlive the recorder. @throws core::Error as firstEpisode().
-  RolloutRecorder(const sim::World& world, const RolloutPlan& plan);
+  RolloutRecorder(const world::World& world, const RolloutPlan& plan);
 
   /// Takes the four messages of one stamp.
   /// @return the labelled step, valid until the next call of any function; nullptr when it is not of the plan or is
@@ -66,7 +66,7 @@ class RolloutRecorder {
   void begin(const Scene& scene);
   void check(const sensor_msgs::Image& image, const Request& request, const Scene& scene, const Action& action) const;
 
-  const sim::World& world_;
+  const world::World& world_;
   RolloutPlan plan_;
   sim::EpisodeKey first_;  // of the plan's episodes
   std::optional<Recording> recording_;

@@ -22,7 +22,7 @@ namespace early_fusion::nodes {
 class RolloutWorkers {
  public:
   /// @param count of workers, at least 1. `world` and `health` must outlive the object.
-  RolloutWorkers(int count, const sim::World& world, double stall_sec, Health& health);
+  RolloutWorkers(int count, const world::World& world, double stall_sec, Health& health);
 
   /// Gives every worker's policy its weights (latched).
   void publish(const Weights& weights);
@@ -41,7 +41,7 @@ class RolloutWorkers {
 
  private:
   struct Worker {
-    Worker(const std::string& name_space, const sim::World& world, double stall_sec, Health& health);
+    Worker(const std::string& name_space, const world::World& world, double stall_sec, Health& health);
 
     ::ros::NodeHandle node;
     ::ros::Publisher weights_publisher;

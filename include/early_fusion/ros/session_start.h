@@ -13,7 +13,7 @@ namespace early_fusion::nodes {
 TrainerNode::Options loadTrainerOptions();
 
 /// Starts the session. A trainer that is respawned in the same launch goes on with it, whatever options.resume says.
-/// @throws core::Error as learning::TrainingSession and sim::loadWorld().
+/// @throws core::Error as learning::TrainingSession and world::loadWorld().
 std::unique_ptr<learning::TrainingSession> startSession(learning::SessionOptions options);
 
 }  // namespace early_fusion::nodes

@@ -74,7 +74,7 @@ class SimulatorNode {
 
   Options options_;
   ::ros::NodeHandle node_;
-  std::shared_ptr<const sim::World> world_;
+  std::shared_ptr<const world::World> world_;
   sim::EpisodeKey free_run_;  // the next episode of free_run; its task is the default of reset
   Health health_;
   StepPublisher publisher_;

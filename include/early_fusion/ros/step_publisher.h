@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/conversions.h"
-#include "early_fusion/sim/rasterizer.h"
 
 namespace early_fusion::nodes {
 
@@ -18,7 +18,7 @@ namespace early_fusion::nodes {
 class StepPublisher {
  public:
   /// @param marker_rate_hz how often at most the markers are published.
-  StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const sim::World> world, double marker_rate_hz);
+  StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const world::World> world, double marker_rate_hz);
 
   /// @param previous_action the name of the action that led to this state; empty at step 0.
   /// @return the stamp, later than every one before it.
@@ -36,12 +36,12 @@ class StepPublisher {
   ::ros::Time nextStamp();
   void publishMarkers(const sim::Episode& episode, ::ros::Time stamp);
 
-  std::shared_ptr<const sim::World> world_;
-  sim::Rasterizer rasterizer_;
+  std::shared_ptr<const world::World> world_;
+  render::Rasterizer rasterizer_;
   ::ros::WallDuration marker_period_;
   ::ros::WallTime last_markers_;
   ::ros::Time last_stamp_;
-  sim::Orientation orientation_;
+  world::Orientation orientation_;
 
   image_transport::ImageTransport image_transport_;
   image_transport::CameraPublisher camera_publisher_;

@@ -16,9 +16,9 @@ inline constexpr double kConeHalfAngleRad = 3.0 * 3.14159265358979323846 / 180.0
 /// both read this table, so they cannot disagree.
 class ConeTable {
  public:
-  ConeTable(const World& world, const std::vector<Instance>& instances);
+  ConeTable(const world::World& world, const std::vector<Instance>& instances);
 
-  const OrientationLattice& lattice() const { return lattice_; }
+  const world::OrientationLattice& lattice() const { return lattice_; }
 
   /// How many steps the picture reaches to each side of the optical axis.
   int viewSteps() const { return view_steps_; }
@@ -30,24 +30,24 @@ class ConeTable {
     const std::uint8_t* begin() const { return first; }
     const std::uint8_t* end() const { return last; }
   };
-  Range at(Orientation orientation) const;
+  Range at(world::Orientation orientation) const;
 
   /// The nearest instance of `present` in the cone, or -1.
-  int nearest(Orientation orientation, InstanceMask present) const;
+  int nearest(world::Orientation orientation, InstanceMask present) const;
 
   /// All orientations at which an instance is in the cone.
-  const std::vector<Orientation>& orientationsOf(int instance) const { return orientations_of_[instance]; }
+  const std::vector<world::Orientation>& orientationsOf(int instance) const { return orientations_of_[instance]; }
 
   /// The share of those at which it is the nearest of `present`, of which it must be one: 0 where nothing but REMOVE
   /// makes way to it, 1 where nothing stands before it. [0, 1]
   double exposure(int instance, InstanceMask present) const;
 
  private:
-  OrientationLattice lattice_;
+  world::OrientationLattice lattice_;
   int view_steps_;
   std::vector<std::uint32_t> offsets_;  // by lattice index, into nearest_first_
   std::vector<std::uint8_t> nearest_first_;
-  std::vector<std::vector<Orientation>> orientations_of_;
+  std::vector<std::vector<world::Orientation>> orientations_of_;
 };
 
 }  // namespace early_fusion::sim

@@ -19,7 +19,7 @@ struct Score {
 /// What changes from step to step.
 struct EpisodeState {
   int step = 0;
-  Orientation orientation;
+  world::Orientation orientation;
   InstanceMask present = 0;
   core::Request request;  ///< still to collect and still in the scene
 };
@@ -28,10 +28,10 @@ struct EpisodeState {
 class Episode {
  public:
   /// The episode that `key` names. `world` must outlive it. @throws Error as sampleEpisode().
-  Episode(const World& world, const EpisodeKey& key) : Episode(world, key.task, sampleEpisode(world, key)) {}
+  Episode(const world::World& world, const EpisodeKey& key) : Episode(world, key.task, sampleEpisode(world, key)) {}
 
   /// One that begins otherwise.
-  Episode(const World& world, const Task& task, EpisodeSetup setup);
+  Episode(const world::World& world, const Task& task, EpisodeSetup setup);
 
   const EpisodeSetup& setup() const { return setup_; }
   const EpisodeState& state() const { return state_; }

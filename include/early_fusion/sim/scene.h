@@ -6,9 +6,9 @@
 
 #include "early_fusion/core/random.h"
 #include "early_fusion/core/vocabulary.h"
-#include "early_fusion/sim/object_pose.h"
 #include "early_fusion/sim/task.h"
-#include "early_fusion/sim/world.h"
+#include "early_fusion/world/object_pose.h"
+#include "early_fusion/world/world.h"
 
 namespace early_fusion::sim {
 
@@ -38,20 +38,20 @@ struct EpisodeKey {
 struct EpisodeSetup {
   std::vector<Instance> instances;
   core::Request request;
-  Orientation orientation;
+  world::Orientation orientation;
 };
 
-Eigen::Isometry3d worldFromObject(const World& world, const Instance& instance);
+Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& instance);
 
 /// The poses of the instances that are present, in their order: what the rasterizer draws.
-std::vector<ObjectPose> presentObjects(const World& world, const std::vector<Instance>& instances,
-                                       InstanceMask present);
+std::vector<world::ObjectPose> presentObjects(const world::World& world, const std::vector<Instance>& instances,
+                                              InstanceMask present);
 
 /// Draws types, collision-free poses, the request and the first orientation, each uniformly.
 /// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
-EpisodeSetup sampleEpisode(const World& world, const Task& task, core::Random& random);
+EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random);
 
 /// The same with the key's own random stream.
-EpisodeSetup sampleEpisode(const World& world, const EpisodeKey& key);
+EpisodeSetup sampleEpisode(const world::World& world, const EpisodeKey& key);
 
 }  // namespace early_fusion::sim

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace early_fusion::world {
+
+/// Where an object of the object set is.
+struct ObjectPose {
+  int item = 0;                         ///< index into the object set
+  Eigen::Isometry3d world_from_object;  ///< [m]
+};
+
+inline bool operator==(const ObjectPose& a, const ObjectPose& b) {
+  return a.item == b.item && a.world_from_object.matrix() == b.world_from_object.matrix();
+}
+
+}  // namespace early_fusion::world

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace early_fusion::world {
+
+struct Vertex {
+  Eigen::Vector3f position;  ///< [m]
+  Eigen::Vector3f normal;    ///< unit length
+  Eigen::Vector2f uv;        ///< texture coordinates, v downwards in the image, wrapping
+};
+
+/// A square image with a power-of-two edge; texels are 0xAABBGGRR, row-major, first row on top.
+struct Texture {
+  int size = 0;
+  std::vector<std::uint32_t> texels;
+};
+
+/// Triangles (three indices each, counter-clockwise seen from outside) that share one texture.
+struct MeshPart {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  Texture texture;
+  float specular = 0.f;  ///< strength of the highlight, [0, 1]
+};
+
+struct TexturedMesh {
+  std::vector<MeshPart> parts;
+
+  std::size_t triangleCount() const;
+  Eigen::AlignedBox3f bounds() const;
+};
+
+/// Loads any mesh that assimp reads, with its diffuse textures (or plain diffuse colours) and smooth normals where the
+/// file has none. A mesh over `max_triangles` is simplified to that many, with a note on stderr.
+/// @param scale applied to the file's coordinates, which become metres.
+/// @throws Error naming `path` and what is missing or broken (no triangles, unreadable texture, not finite).
+TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles);
+
+}  // namespace early_fusion::world

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh_drawer.h"
+#include "projection.h"
+#include "render_assets.h"
+#include "sample_buffer.h"
+
+namespace early_fusion::render {
+
+/// Towards the light, unit length, world frame: up, to the left (+y) and in front of the counter (-x), so that shadows
+/// fall away from the camera, to the right.
+inline constexpr float kTowardsLight[3] = {-0.400964f, 0.360867f, 0.842023f};
+
+/// What of the light's rays the objects on the counter stop. The light is far away (orthographic); the map covers every
+/// place where an object can stand, so a point outside it is lit.
+class ShadowMap {
+ public:
+  explicit ShadowMap(const world::World& world);
+
+  struct Caster {
+    const RenderMesh* mesh;
+    RenderPose world_from_mesh;
+  };
+  void draw(const std::vector<Caster>& casters);
+
+  /// Share of the light that reaches points of a surface, in [0, 1]: soft over three texels, half where the edge of
+  /// what stops the light is, up to the rounding of that edge to whole texels.
+  /// @param point, normal (unit length) in the world [m]
+  /// @param needed lanes whose result is used
+  FloatLanes lit(const std::array<FloatLanes, 3>& point, const std::array<FloatLanes, 3>& normal,
+                 IntLanes needed) const;
+
+ private:
+  void summarise();
+  FloatLanes filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y, FloatLanes depth) const;
+
+  Projection projection_;
+  float texel_size_ = 0;  // [m]
+  int width_ = 0;         // [texels], of which a cell has kCellSize by kCellSize
+  int height_ = 0;
+  MeshDrawer drawer_;
+  std::vector<SampleBuffer> buffer_;         // one; empty until the size is known
+  std::vector<float> depth_;                 // row-major, distance towards the light [m]
+  std::vector<float> cell_low_, cell_high_;  // of the depths that a filter which begins in the cell reads
+};
+
+}  // namespace early_fusion::render

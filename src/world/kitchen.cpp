@@ -1,0 +1,126 @@
+#include "kitchen.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
+#include "early_fusion/core/names.h"
+#include "early_fusion/world/convex_hull.h"
+#include "primitive_mesh.h"
+#include "urdf_file.h"
+
+namespace early_fusion::world {
+
+namespace {
+
+constexpr std::uint32_t kLightGrey = 0xffc8c8c8u;
+
+Eigen::Isometry3d worldFromLink(const urdf::ModelInterface& model, const std::string& name, const std::string& file) {
+  Eigen::Isometry3d world_from_link = Eigen::Isometry3d::Identity();
+  urdf::LinkConstSharedPtr link = model.getLink(name);
+  while (const urdf::JointConstSharedPtr joint = link->parent_joint) {
+    if (joint->type != urdf::Joint::FIXED) {
+      throw core::Error(file + ": joint '" + joint->name + "' must be fixed: nothing in the kitchen moves");
+    }
+    world_from_link = toEigen(joint->parent_to_joint_origin_transform) * world_from_link;
+    link = model.getLink(joint->parent_link_name);
+  }
+  return world_from_link;
+}
+
+std::uint32_t colourOf(const urdf::Visual& visual) {
+  if (!visual.material) return kLightGrey;
+  const urdf::Color& colour = visual.material->color;
+  const auto byte = [](float value) {
+    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
+  };
+  return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
+}
+
+std::string meshFile(const std::string& name, const std::string& urdf_file) {
+  const std::string own = "package://early_fusion/";
+  if (name.compare(0, own.size(), own) == 0) return core::shareFolder() + "/" + name.substr(own.size());
+  if (name.compare(0, 7, "file://") == 0) return name.substr(7);
+  if (name.find("://") != std::string::npos) {
+    throw core::Error("cannot find mesh '" + name + "': write package://early_fusion/, file:// or a path relative to " +
+                      urdf_file);
+  }
+  return core::resolvePath(urdf_file, name);
+}
+
+TexturedMesh meshOf(const urdf::Geometry& geometry, std::uint32_t colour, const std::string& urdf_file,
+                    int max_triangles) {
+  switch (geometry.type) {
+    case urdf::Geometry::BOX:
+      return boxMesh(toEigen(static_cast<const urdf::Box&>(geometry).dim), colour);
+    case urdf::Geometry::CYLINDER: {
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      return cylinderMesh(cylinder.radius, cylinder.length, colour);
+    }
+    case urdf::Geometry::SPHERE:
+      return sphereMesh(static_cast<const urdf::Sphere&>(geometry).radius, colour);
+    case urdf::Geometry::MESH:
+      break;
+  }
+  const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+  return loadTexturedMesh(meshFile(mesh.filename, urdf_file), toEigen(mesh.scale), max_triangles);
+}
+
+HorizontalRectangle topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, const std::string& where) {
+  if (!link.collision || !link.collision->geometry || link.collision->geometry->type != urdf::Geometry::BOX) {
+    throw core::Error(where + " needs a collision box: its top carries the objects");
+  }
+  const Eigen::Isometry3d world_from_box = world_from_link * toEigen(link.collision->origin);
+  const Eigen::Matrix3d turned = world_from_box.linear().cwiseAbs();
+  if ((turned - turned.array().round().matrix()).cwiseAbs().maxCoeff() > 1e-4) {
+    throw core::Error(where + ": its collision box must be parallel to the world's axes");
+  }
+  const Eigen::Vector3d half = 0.5 * turned * toEigen(static_cast<const urdf::Box&>(*link.collision->geometry).dim);
+  const Eigen::Vector3d center = world_from_box.translation();
+  return {center.x() - half.x(), center.x() + half.x(), center.y() - half.y(), center.y() + half.y(),
+          center.z() + half.z()};
+}
+
+/// Adds a link's collision shapes, those aside that do not rise above `counter_top` [m]: objects stand there.
+void addObstacles(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, double counter_top,
+                  const std::string& urdf_file, int max_triangles,
+                  std::vector<std::shared_ptr<const PlacedHull>>& obstacles) {
+  constexpr double kLevel = 0.001;  // [m]
+  for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+    if (!collision->geometry) continue;
+    const TexturedMesh mesh = meshOf(*collision->geometry, kLightGrey, urdf_file, max_triangles);
+    auto hull = std::make_shared<const PlacedHull>(collisionHull(mesh), world_from_link * toEigen(collision->origin));
+    if (hull->bounds().max().z() > counter_top + kLevel) obstacles.push_back(std::move(hull));
+  }
+}
+
+}  // namespace
+
+Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_link, int max_triangles) {
+  const urdf::ModelInterfaceSharedPtr model = loadUrdf(urdf_file);
+  const urdf::LinkConstSharedPtr counter = model->getLink(counter_link);
+  if (!counter) {
+    throw core::Error(urdf_file + ": no link '" + counter_link +
+                      "'; its links are: " + core::joined(core::keys(model->links_)));
+  }
+  Kitchen kitchen;
+  kitchen.counter_top =
+      topOf(*counter, worldFromLink(*model, counter_link, urdf_file), urdf_file + ": link '" + counter_link + "'");
+  for (const auto& [name, link] : model->links_) {
+    const Eigen::Isometry3d world_from_link = worldFromLink(*model, name, urdf_file);
+    try {
+      for (const urdf::VisualSharedPtr& visual : link->visual_array) {
+        if (!visual->geometry) continue;
+        kitchen.meshes.push_back({name, meshOf(*visual->geometry, colourOf(*visual), urdf_file, max_triangles),
+                                  world_from_link * toEigen(visual->origin)});
+      }
+      addObstacles(*link, world_from_link, kitchen.counter_top.z, urdf_file, max_triangles, kitchen.obstacles);
+    } catch (const core::Error& error) {
+      throw core::Error(urdf_file + ": link '" + name + "': " + error.what());
+    }
+  }
+  return kitchen;
+}
+
+}  // namespace early_fusion::world

@@ -1,0 +1,123 @@
+#include "mesh_texture.h"
+
+#include <assimp/material.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
+
+namespace early_fusion::world {
+
+namespace {
+
+constexpr int kPlainSize = 4;
+constexpr float kMaxSpecular = 0.5f;
+constexpr float kGlossyShininess = 30.f;
+
+std::uint32_t packColor(float red, float green, float blue) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint32_t>(std::lround(255.f * std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f)));
+  };
+  return byte(red) | byte(green) << 8 | byte(blue) << 16 | 0xff000000u;
+}
+
+Texture plainTexture(const aiMaterial& material) {
+  aiColor4D color(0.8f, 0.8f, 0.8f, 1.f);
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) material.Get(AI_MATKEY_BASE_COLOR, color);
+  return {kPlainSize, std::vector<std::uint32_t>(kPlainSize * kPlainSize, packColor(color.r, color.g, color.b))};
+}
+
+/// Area filter where the picture shrinks, so that fine print turns to grey and not to noise.
+Texture squareTexture(const cv::Mat& bgr) {
+  const int longest = std::max(bgr.cols, bgr.rows);
+  int size = 1;
+  while (size < longest && size < kMaxTextureSize) size *= 2;
+  cv::Mat square = bgr;
+  if (bgr.cols != size || bgr.rows != size) {
+    const bool shrinks = bgr.cols >= size && bgr.rows >= size;
+    cv::resize(bgr, square, cv::Size(size, size), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+  }
+  Texture texture{size, std::vector<std::uint32_t>(static_cast<std::size_t>(size) * size)};
+  for (int y = 0; y < size; ++y) {
+    const cv::Vec3b* row = square.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < size; ++x) {
+      texture.texels[static_cast<std::size_t>(y) * size + x] = row[x][2] | static_cast<std::uint32_t>(row[x][1]) << 8 |
+                                                               static_cast<std::uint32_t>(row[x][0]) << 16 |
+                                                               0xff000000u;
+    }
+  }
+  return texture;
+}
+
+cv::Mat decodeEmbedded(const aiTexture& embedded) {
+  if (embedded.mHeight == 0) {  // a PNG or JPEG file of mWidth bytes
+    const auto* bytes = reinterpret_cast<const unsigned char*>(embedded.pcData);
+    return cv::imdecode(std::vector<unsigned char>(bytes, bytes + embedded.mWidth), cv::IMREAD_COLOR);
+  }
+  cv::Mat bgr(embedded.mHeight, embedded.mWidth, CV_8UC3);
+  for (int y = 0; y < bgr.rows; ++y) {
+    for (int x = 0; x < bgr.cols; ++x) {
+      const aiTexel& texel = embedded.pcData[static_cast<std::size_t>(y) * bgr.cols + x];
+      bgr.at<cv::Vec3b>(y, x) = {texel.b, texel.g, texel.r};
+    }
+  }
+  return bgr;
+}
+
+cv::Mat readPicture(const aiScene& scene, const std::string& name, const std::string& mesh_path) {
+  if (const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str())) {
+    const cv::Mat picture = decodeEmbedded(*embedded);
+    if (picture.empty()) throw core::Error(mesh_path + ": the embedded texture '" + name + "' cannot be decoded");
+    return picture;
+  }
+  std::string file = name;
+  std::replace(file.begin(), file.end(), '\\', '/');
+  const std::string scheme = "file://";
+  if (file.compare(0, scheme.size(), scheme) == 0) file.erase(0, scheme.size());
+  file = core::resolvePath(mesh_path, file);
+  const std::string bytes = [&] {
+    try {
+      return core::readFile(file);
+    } catch (const core::Error& error) {
+      throw core::Error(mesh_path + ": its texture cannot be read: " + error.what());
+    }
+  }();
+  const cv::Mat picture = bytes.empty()
+                              ? cv::Mat()
+                              : cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+  if (picture.empty()) {
+    throw core::Error(mesh_path + ": its texture " + file + " is not a picture that can be decoded; use PNG or JPEG");
+  }
+  return picture;
+}
+
+}  // namespace
+
+Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path) {
+  for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+    aiString name;
+    if (material.GetTexture(type, 0, &name) == AI_SUCCESS && name.length > 0) {
+      return squareTexture(readPicture(scene, name.C_Str(), mesh_path));
+    }
+  }
+  return plainTexture(material);
+}
+
+float readSpecular(const aiMaterial& material) {
+  float roughness = 0.f;
+  if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == AI_SUCCESS) {
+    return kMaxSpecular * std::clamp(1.f - roughness, 0.f, 1.f);
+  }
+  aiColor3D color(0.f, 0.f, 0.f);
+  float shininess = 0.f;
+  material.Get(AI_MATKEY_COLOR_SPECULAR, color);
+  material.Get(AI_MATKEY_SHININESS, shininess);
+  const float strength = (color.r + color.g + color.b) / 3.f * std::min(shininess / kGlossyShininess, 1.f);
+  return std::isfinite(strength) ? std::clamp(strength, 0.f, kMaxSpecular) : 0.f;
+}
+
+}  // namespace early_fusion::world

@@ -1,0 +1,104 @@
+#include "early_fusion/world/placed_hull.h"
+
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
+
+#include <algorithm>
+
+namespace early_fusion::world {
+
+namespace {
+
+/// Bullet takes corners less than 0.01 of its units apart for one and shapes less than 0.0001 apart for touching, so
+/// one of its units is a centimetre here: a tenth of a millimetre and a micrometre.
+constexpr double kUnitsPerMetre = 100.0;
+
+/// How far a distance may lie above what its direction confirms: a hundredth of a millimetre [Bullet's unit], and a
+/// share of the distance; Bullet itself stops at a share of 0.0001.
+constexpr btScalar kAbsoluteTolerance = btScalar(1e-3);
+constexpr btScalar kRelativeTolerance = btScalar(3e-4);
+
+btVector3 toBullet(const Eigen::Vector3d& metres) {
+  const Eigen::Vector3d units = metres * kUnitsPerMetre;
+  return btVector3(static_cast<btScalar>(units.x()), static_cast<btScalar>(units.y()),
+                   static_cast<btScalar>(units.z()));
+}
+
+btTransform translation(const btVector3& by) {
+  btTransform transform = btTransform::getIdentity();
+  transform.setOrigin(by);
+  return transform;
+}
+
+/// How far apart the shapes are along a unit vector that points from `b` to `a`: a lower bound of their distance,
+/// negative where they overlap in that direction.
+btScalar gapAlong(const btVector3& along, const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin) {
+  return along.dot(a.localGetSupportVertexWithoutMarginNonVirtual(-along)) -
+         along.dot(b.localGetSupportVertexWithoutMarginNonVirtual(along) + b_origin);
+}
+
+/// The smallest distance [Bullet's unit] between `a`, in the origin, and `b`; 0 where they meet. Both have margin 0.
+///
+/// Now and then GJK stops early, on a flat simplex, and reports a distance that is too large, even for shapes that
+/// overlap. So a distance counts only when the gap along its direction confirms it; else GJK starts anew from
+/// elsewhere, and where no start helps, the widest gap that was found is the answer.
+/// @param nearest the point of `a` nearest to `b`, set where the distance is not 0.
+double distanceBetween(const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin, btVector3* nearest) {
+  constexpr int kTries = 12;
+  btVector3 guess = -b_origin;
+  btScalar widest = 0;
+  for (int i = 0; i < kTries; ++i) {
+    btGjkEpaSolver2::sResults results;
+    const bool apart =
+        btGjkEpaSolver2::Distance(&a, btTransform::getIdentity(), &b, translation(b_origin), guess, results);
+    if (!apart) return 0.0;  // they overlap, or just touch
+    const btVector3 along = results.witnesses[0] - results.witnesses[1];
+    const btScalar gap = along.fuzzyZero() ? 0 : gapAlong(along.normalized(), a, b, b_origin);
+    if (gap > widest) *nearest = results.witnesses[0];
+    widest = std::max(widest, gap);
+    const btScalar tolerance = kAbsoluteTolerance + kRelativeTolerance * results.distance;
+    if (results.distance - gap <= tolerance) return static_cast<double>(results.distance);
+    guess = guess.rotate(btVector3(i % 3 == 0, i % 3 == 1, i % 3 == 2), btScalar(0.7));
+  }
+  return static_cast<double>(widest);
+}
+
+}  // namespace
+
+PlacedHull::PlacedHull(const std::vector<Eigen::Vector3d>& corners, const Eigen::Isometry3d& world_from_object) {
+  corners_.reserve(corners.size());
+  for (const Eigen::Vector3d& corner : corners) corners_.push_back(world_from_object * corner);
+  center_.setZero();
+  for (const Eigen::Vector3d& corner : corners_) center_ += corner;
+  center_ /= static_cast<double>(corners_.size());
+  std::vector<btVector3> points;
+  points.reserve(corners_.size());
+  for (const Eigen::Vector3d& corner : corners_) {
+    radius_ = std::max(radius_, (corner - center_).norm());
+    bounds_.extend(corner);
+    points.push_back(toBullet(corner - center_));
+  }
+  shape_ = std::make_unique<btConvexHullShape>(&points[0].x(), static_cast<int>(points.size()),
+                                               static_cast<int>(sizeof(btVector3)));
+  shape_->setMargin(0);
+}
+
+PlacedHull::~PlacedHull() = default;
+PlacedHull::PlacedHull(PlacedHull&&) noexcept = default;
+PlacedHull& PlacedHull::operator=(PlacedHull&&) noexcept = default;
+
+double PlacedHull::distanceTo(const PlacedHull& other) const {
+  btVector3 nearest;
+  return distanceBetween(*shape_, *other.shape_, toBullet(other.center_ - center_), &nearest) / kUnitsPerMetre;
+}
+
+double PlacedHull::distanceTo(const Eigen::Vector3d& point, Eigen::Vector3d* nearest) const {
+  const btSphereShape dot(0);
+  btVector3 on_hull(0, 0, 0);
+  const double distance = distanceBetween(*shape_, dot, toBullet(point - center_), &on_hull) / kUnitsPerMetre;
+  if (nearest != nullptr) *nearest = center_ + Eigen::Vector3d(on_hull.x(), on_hull.y(), on_hull.z()) / kUnitsPerMetre;
+  return distance;
+}
+
+}  // namespace early_fusion::world

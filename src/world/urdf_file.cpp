@@ -1,0 +1,55 @@
+#include "urdf_file.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <exception>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
+
+namespace early_fusion::world {
+
+namespace {
+
+/// Keeps what urdfdom would print, which is the only place where it says what is wrong.
+class Complaints : public console_bridge::OutputHandler {
+ public:
+  Complaints() { console_bridge::useOutputHandler(this); }
+  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ += (text_.empty() ? "" : "; ") + text;
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+  const std::string xml = core::readFile(path);
+  Complaints complaints;
+  urdf::ModelInterfaceSharedPtr model;
+  std::string reason;
+  try {
+    model = urdf::parseURDF(xml);
+    reason = complaints.text();
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  if (model && model->getRoot()) return model;
+  throw core::Error(path + ": not a valid URDF: " + (reason.empty() ? "no root link" : reason));
+}
+
+Eigen::Vector3d toEigen(const urdf::Vector3& vector) { return Eigen::Vector3d(vector.x, vector.y, vector.z); }
+
+Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  return Eigen::Translation3d(toEigen(pose.position)) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+}
+
+}  // namespace early_fusion::world

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <urdf_model/model.h>
+#include <urdf_world/types.h>
+
+#include <Eigen/Geometry>
+#include <string>
+
+namespace early_fusion::world {
+
+/// @throws Error naming `path` and what the parser says of it.
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path);
+
+Eigen::Vector3d toEigen(const urdf::Vector3& vector);
+Eigen::Isometry3d toEigen(const urdf::Pose& pose);
+
+}  // namespace early_fusion::world

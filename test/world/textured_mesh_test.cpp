@@ -1,0 +1,208 @@
+#include "early_fusion/world/textured_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "world/handmade_world.h"
+#include "world/test_world.h"
+#include "world/ycb_scans.h"
+
+namespace early_fusion::world {
+namespace {
+
+const Eigen::Vector3d kUnscaled(1, 1, 1);
+constexpr int kManyTriangles = 100000;
+
+class TexturedMeshTest : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
+
+  /// Red in the upper left quarter, else blue.
+  void writePicture(const std::string& name, int width, int height) const {
+    cv::Mat picture(height, width, CV_8UC3, cv::Scalar(200, 0, 0));
+    picture(cv::Rect(0, 0, width / 2, height / 2)) = cv::Scalar(0, 0, 200);
+    ASSERT_TRUE(cv::imwrite(folder_.path() + "/" + name, picture));
+  }
+
+  static std::string errorOf(const std::string& path) {
+    return world::errorOf([&] { loadTexturedMesh(path, kUnscaled, kManyTriangles); });
+  }
+
+  const TestFolder folder_;
+};
+
+const char* const kSquare =
+    "mtllib square.mtl\n"
+    "v 0 0 0\nv 2 0 0\nv 2 0 1\nv 0 0 1\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl cloth\nf 1/1 2/2 3/3 4/4\n";
+
+/// A ball as an OBJ file, without normals.
+std::string ballObj(int segments, int rings) {
+  MeshPart part;
+  appendBall(part, 0.05f, 0.1f, segments, rings);
+  std::ostringstream text;
+  for (const Vertex& v : part.vertices) {
+    text << "v " << v.position.x() << ' ' << v.position.y() << ' ' << v.position.z() << "\nvt " << v.uv.x() << ' '
+         << v.uv.y() << '\n';
+  }
+  for (std::size_t i = 0; i < part.indices.size(); ++i) {
+    text << (i % 3 == 0 ? "\nf " : " ") << part.indices[i] + 1 << '/' << part.indices[i] + 1;
+  }
+  return text.str() + "\n";
+}
+
+TEST_F(TexturedMeshTest, ReadsTriangledPolygonsWithTheirTexture) {
+  writePicture("cloth.png", 64, 64);
+  write("square.mtl", "newmtl cloth\nKd 1 1 1\nKs 0.4 0.4 0.4\nNs 60\nmap_Kd cloth.png\n");
+  const TexturedMesh mesh = loadTexturedMesh(write("square.obj", kSquare), {1, 1, 0.5}, kManyTriangles);
+  ASSERT_EQ(mesh.parts.size(), 1u);
+  const MeshPart& part = mesh.parts[0];
+  EXPECT_EQ(mesh.triangleCount(), 2u);
+  EXPECT_TRUE(mesh.bounds().min().isApprox(Eigen::Vector3f(0, 0, 0)));
+  EXPECT_TRUE(mesh.bounds().max().isApprox(Eigen::Vector3f(2, 0, 0.5f)));
+  EXPECT_NEAR(part.specular, 0.4, 1e-6);
+  ASSERT_EQ(part.texture.size, 64);
+  EXPECT_EQ(part.texture.texels[5 * 64 + 5], rgb(200, 0, 0));
+  EXPECT_EQ(part.texture.texels[60 * 64 + 5], rgb(0, 0, 200));
+  for (const Vertex& vertex : part.vertices) {
+    EXPECT_TRUE(vertex.normal.isApprox(-Eigen::Vector3f::UnitY())) << "not outwards";
+    // v grows downwards: the top of the square has the picture's first row.
+    EXPECT_FLOAT_EQ(vertex.uv.y(), vertex.position.z() > 0.1f ? 0.f : 1.f);
+    EXPECT_FLOAT_EQ(vertex.uv.x(), vertex.position.x() / 2);
+  }
+}
+
+TEST_F(TexturedMeshTest, TexturesBecomeSquaresOfAPowerOfTwo) {
+  write("square.mtl", "newmtl cloth\nmap_Kd cloth.png\n");
+  const std::string path = write("square.obj", kSquare);
+  const struct { int width, height, size; } cases[] = {{100, 60, 128}, {2048, 1024, 512}, {3, 3, 4}, {256, 256, 256}};
+  for (const auto& c : cases) {
+    writePicture("cloth.png", c.width, c.height);
+    const Texture texture = loadTexturedMesh(path, kUnscaled, kManyTriangles).parts[0].texture;
+    EXPECT_EQ(texture.size, c.size);
+    EXPECT_EQ(texture.texels.size(), static_cast<std::size_t>(c.size) * c.size);
+    EXPECT_EQ(texture.texels.front(), rgb(200, 0, 0));
+    EXPECT_EQ(texture.texels.back(), rgb(0, 0, 200));
+  }
+}
+
+TEST_F(TexturedMeshTest, APlainColourBecomesASmallTexture) {
+  write("square.mtl", "newmtl cloth\nKd 1 0.5 0\n");
+  const MeshPart part = loadTexturedMesh(write("square.obj", kSquare), kUnscaled, kManyTriangles).parts[0];
+  EXPECT_EQ(part.texture.size, 4);
+  EXPECT_EQ(part.texture.texels, std::vector<std::uint32_t>(16, rgb(255, 128, 0)));
+  EXPECT_EQ(part.specular, 0.f);
+}
+
+TEST_F(TexturedMeshTest, EveryMaterialIsAPart) {
+  write("square.mtl", "newmtl cloth\nKd 1 0 0\nnewmtl wood\nKd 0 1 0\n");
+  const std::string text = std::string(kSquare) + "v 0 1 0\nv 2 1 0\nv 2 1 1\nusemtl wood\nf 5/1 6/2 7/3\n";
+  const TexturedMesh mesh = loadTexturedMesh(write("two.obj", text), kUnscaled, kManyTriangles);
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  EXPECT_EQ(mesh.parts[0].texture.texels[0], rgb(255, 0, 0));
+  EXPECT_EQ(mesh.parts[0].indices.size(), 6u);
+  EXPECT_EQ(mesh.parts[1].texture.texels[0], rgb(0, 255, 0));
+  EXPECT_EQ(mesh.parts[1].indices.size(), 3u);
+}
+
+TEST_F(TexturedMeshTest, SmoothNormalsAreMadeWhereTheFileHasNone) {
+  const TexturedMesh mesh = loadTexturedMesh(write("ball.obj", ballObj(24, 12)), kUnscaled, kManyTriangles);
+  for (const Vertex& vertex : mesh.parts.at(0).vertices) {
+    const Eigen::Vector3f outwards = (vertex.position - Eigen::Vector3f(0, 0, 0.05f)).normalized();
+    EXPECT_GT(vertex.normal.dot(outwards), 0.95f);
+    EXPECT_NEAR(vertex.normal.norm(), 1, 1e-5);
+  }
+}
+
+TEST_F(TexturedMeshTest, NodesAreMovedAndMirroredOnesStayOutside) {
+  // Two instances of one triangle: one moved, one mirrored; a Collada file keeps them as nodes.
+  const std::string source =
+      "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">"
+      "<asset><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id=\"g\"><mesh>"
+      "<source id=\"p\"><float_array id=\"pa\" count=\"9\">0 0 0 1 0 0 0 1 0</float_array><technique_common>"
+      "<accessor source=\"#pa\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
+      "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+      "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>"
+      "<triangles count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 1 2</p></triangles>"
+      "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">"
+      "<node id=\"a\"><translate>0 0 5</translate><instance_geometry url=\"#g\"/></node>"
+      "<node id=\"b\"><scale>-1 1 1</scale><instance_geometry url=\"#g\"/></node>"
+      "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+  const TexturedMesh mesh = loadTexturedMesh(write("nodes.dae", source), kUnscaled, kManyTriangles);
+  EXPECT_EQ(mesh.triangleCount(), 2u);
+  EXPECT_TRUE(mesh.bounds().min().isApprox(Eigen::Vector3f(-1, 0, 0)));
+  EXPECT_TRUE(mesh.bounds().max().isApprox(Eigen::Vector3f(1, 1, 5)));
+  for (const MeshPart& part : mesh.parts) {
+    for (std::size_t i = 0; i < part.indices.size(); i += 3) {
+      const auto at = [&](int k) { return part.vertices[part.indices[i + k]].position; };
+      EXPECT_GT((at(1) - at(0)).cross(at(2) - at(0)).z(), 0) << "a triangle is inside out";
+    }
+    for (const Vertex& vertex : part.vertices) EXPECT_GT(vertex.normal.z(), 0.99f);
+  }
+}
+
+TEST_F(TexturedMeshTest, LargeMeshesAreSimplifiedAndKeepTheirShape) {
+  const std::string path = write("ball.obj", ballObj(120, 60));
+  const TexturedMesh full = loadTexturedMesh(path, kUnscaled, kManyTriangles);
+  ASSERT_GT(full.triangleCount(), 10000u);
+  testing::internal::CaptureStderr();
+  const TexturedMesh simple = loadTexturedMesh(path, kUnscaled, 1000);
+  const std::string note = testing::internal::GetCapturedStderr();
+  EXPECT_NE(note.find(path), std::string::npos) << note;
+  EXPECT_LE(simple.triangleCount(), 1050u);
+  EXPECT_GT(simple.triangleCount(), 700u);
+  EXPECT_LT((simple.bounds().sizes() - full.bounds().sizes()).cwiseAbs().maxCoeff(), 0.003f);
+  for (const Vertex& vertex : simple.parts.at(0).vertices) {
+    EXPECT_NEAR((vertex.position - Eigen::Vector3f(0, 0, 0.05f)).norm(), 0.05f, 0.001f);
+    EXPECT_GT(vertex.normal.dot((vertex.position - Eigen::Vector3f(0, 0, 0.05f)).normalized()), 0.9f);
+  }
+  for (const std::uint32_t index : simple.parts[0].indices) ASSERT_LT(index, simple.parts[0].vertices.size());
+}
+
+TEST_F(TexturedMeshTest, ErrorsNameThePathAndTheFault) {
+  const std::string missing = folder_.path() + "/missing.obj";
+  EXPECT_NE(errorOf(missing).find(missing + ": cannot be read as a mesh"), std::string::npos) << errorOf(missing);
+
+  const std::string garbage = write("garbage.obj", "this is no mesh\n");
+  EXPECT_NE(errorOf(garbage).find(garbage + ": has no triangles"), std::string::npos) << errorOf(garbage);
+
+  const std::string points = write("points.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+  EXPECT_NE(errorOf(points).find(points + ": cannot be read as a mesh"), std::string::npos) << errorOf(points);
+
+  const std::string square = write("square.obj", kSquare);
+  write("square.mtl", "newmtl cloth\nmap_Kd nowhere.png\n");
+  EXPECT_NE(errorOf(square).find(square), std::string::npos);
+  EXPECT_NE(errorOf(square).find("nowhere.png"), std::string::npos);
+
+  write("square.mtl", "newmtl cloth\nmap_Kd square.obj\n");
+  EXPECT_NE(errorOf(square).find("picture"), std::string::npos) << errorOf(square);
+
+  const std::string infinite = write("infinite.obj", "v 0 0 0\nv 1 0 0\nv 1 1e39 0\nf 1 2 3\n");
+  EXPECT_NE(errorOf(infinite).find(infinite + ": vertex "), std::string::npos) << errorOf(infinite);
+}
+
+TEST_F(TexturedMeshTest, RealScansLoad) {
+  const auto folder = ycbFolder();
+  if (!folder) GTEST_SKIP() << kNoYcbScans;
+  const std::vector<std::string> scans = ycbMeshes(*folder);
+  EXPECT_FALSE(scans.empty()) << "no textured.obj in " << *folder;
+  for (const std::string& path : scans) {
+    SCOPED_TRACE(path);
+    const TexturedMesh mesh = loadTexturedMesh(path, kUnscaled, 2000);
+    EXPECT_GT(mesh.triangleCount(), 500u);
+    EXPECT_LE(mesh.triangleCount(), 2000u);
+    const Eigen::Vector3f size = mesh.bounds().sizes();
+    EXPECT_GT(size.maxCoeff(), 0.03f);  // [m]: a strawberry
+    EXPECT_LT(size.maxCoeff(), 0.35f);  // a plate
+    for (const MeshPart& part : mesh.parts) {
+      EXPECT_EQ(part.texture.size, 256);
+      for (const Vertex& vertex : part.vertices) ASSERT_NEAR(vertex.normal.norm(), 1, 1e-4);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace early_fusion::world
