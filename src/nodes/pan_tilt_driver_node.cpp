@@ -1,8 +1,8 @@
-#include "early_fusion/ros/pan_tilt_driver_node.h"
+#include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 
 #include <ros/init.h>
 
-#include "early_fusion/ros/run_node.h"
+#include "early_fusion/ros/shared/run_node.h"
 
 int main(int argc, char** argv) {
   namespace nodes = early_fusion::nodes;

@@ -1,8 +1,8 @@
-#include "early_fusion/ros/request_node.h"
+#include "early_fusion/ros/robot/request_node.h"
 
 #include <ros/init.h>
 
-#include "early_fusion/ros/run_node.h"
+#include "early_fusion/ros/shared/run_node.h"
 
 int main(int argc, char** argv) {
   namespace nodes = early_fusion::nodes;

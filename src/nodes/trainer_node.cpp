@@ -1,9 +1,9 @@
-#include "early_fusion/ros/trainer_node.h"
+#include "early_fusion/ros/trainer/trainer_node.h"
 
 #include <ros/init.h>
 
-#include "early_fusion/ros/run_node.h"
-#include "early_fusion/ros/session_start.h"
+#include "early_fusion/ros/shared/run_node.h"
+#include "early_fusion/ros/trainer/session_start.h"
 
 int main(int argc, char** argv) {
   namespace nodes = early_fusion::nodes;

@@ -1,4 +1,4 @@
-#include "early_fusion/ros/acting_policy.h"
+#include "early_fusion/ros/policy/acting_policy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "early_fusion/ros/camera_image.h"
+#include "early_fusion/ros/shared/camera_image.h"
 
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>

@@ -1,4 +1,4 @@
-#include "early_fusion/ros/conversions.h"
+#include "early_fusion/ros/shared/conversions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "early_fusion/ros/markers.h"
+#include "early_fusion/ros/simulator/markers.h"
 
 #include <gtest/gtest.h>
 

@@ -7,14 +7,14 @@
 #include <algorithm>
 
 #include "child_process.h"
-#include "early_fusion/ros/evaluator_node.h"
-#include "early_fusion/ros/pan_tilt_driver_node.h"
-#include "early_fusion/ros/policy_node.h"
-#include "early_fusion/ros/request_node.h"
-#include "early_fusion/ros/session_monitor_node.h"
-#include "early_fusion/ros/simulator_node.h"
-#include "early_fusion/ros/topics.h"
-#include "early_fusion/ros/trainer_node.h"
+#include "early_fusion/ros/policy/policy_node.h"
+#include "early_fusion/ros/robot/pan_tilt_driver_node.h"
+#include "early_fusion/ros/robot/request_node.h"
+#include "early_fusion/ros/shared/topics.h"
+#include "early_fusion/ros/simulator/simulator_node.h"
+#include "early_fusion/ros/trainer/evaluator_node.h"
+#include "early_fusion/ros/trainer/session_monitor_node.h"
+#include "early_fusion/ros/trainer/trainer_node.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {

@@ -15,9 +15,9 @@
 #include "early_fusion/core/random.h"
 #include "early_fusion/model/policy_file.h"
 #include "early_fusion/model/policy_kinds.h"
-#include "early_fusion/ros/acting_policy.h"
-#include "early_fusion/ros/camera_image.h"
-#include "early_fusion/ros/topics.h"
+#include "early_fusion/ros/policy/acting_policy.h"
+#include "early_fusion/ros/shared/camera_image.h"
+#include "early_fusion/ros/shared/topics.h"
 #include "small_session.h"
 #include "spin_until.h"
 

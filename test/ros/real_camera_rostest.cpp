@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "early_fusion/core/file.h"
-#include "early_fusion/ros/topics.h"
+#include "early_fusion/ros/shared/topics.h"
 #include "early_fusion/world/camera_rig.h"
 #include "spin_until.h"
 

@@ -1,4 +1,4 @@
-#include "early_fusion/ros/rollout_recorder.h"
+#include "early_fusion/ros/trainer/rollout_recorder.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include "early_fusion/learning/agent.h"
 #include "early_fusion/learning/rollout.h"
 #include "early_fusion/render/rasterizer.h"
-#include "early_fusion/ros/conversions.h"
+#include "early_fusion/ros/shared/conversions.h"
 #include "small_session.h"
 
 namespace early_fusion::nodes {

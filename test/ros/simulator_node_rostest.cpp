@@ -13,8 +13,8 @@
 #include <map>
 
 #include "early_fusion/render/rasterizer.h"
-#include "early_fusion/ros/conversions.h"
-#include "early_fusion/ros/topics.h"
+#include "early_fusion/ros/shared/conversions.h"
+#include "early_fusion/ros/shared/topics.h"
 #include "small_session.h"
 #include "spin_until.h"
 

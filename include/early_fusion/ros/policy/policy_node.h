@@ -1,0 +1,80 @@
+#pragma once
+
+#include <early_fusion/Action.h>
+#include <early_fusion/LoadWeights.h>
+#include <early_fusion/Request.h>
+#include <early_fusion/SaveWeights.h>
+#include <early_fusion/Weights.h>
+#include <image_transport/image_transport.h>
+#include <image_transport/subscriber_filter.h>
+#include <message_filters/subscriber.h>
+#include <message_filters/sync_policies/exact_time.h>
+#include <message_filters/synchronizer.h>
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "early_fusion/core/options.h"
+#include "early_fusion/ros/policy/acting_policy.h"
+#include "early_fusion/ros/shared/health.h"
+
+namespace early_fusion::nodes {
+
+/// Answers every image that has a request of the same stamp with an action. Knows nothing of the simulator: any
+/// camera's images will do.
+class PolicyNode {
+ public:
+  struct Options {
+    std::string weights;  ///< a weights file; empty: wait for the topic or the service
+    Acting acting;        ///< with weights from a file
+    std::string image_transport = "raw";
+    int annotated_scale = 4;
+    double annotated_rate_hz = 10;
+    int saliency_grid = 0;  ///< 0: no saliency on the annotated image
+    double diagnostic_period_sec = 1;
+
+    core::OptionSet options();
+  };
+
+  /// @throws core::Error when the weights file cannot be used.
+  explicit PolicyNode(const Options& options);
+
+ private:
+  void onImage(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request);
+  void onWeights(const Weights& message);
+  bool onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response);
+  bool onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response);
+
+  void load(const std::string& id, nn::WeightsFile file, const std::string& source, const Acting& acting);
+  void loadFile(const std::string& path);
+  void publishStatus();
+  void publishAnnotated(const core::Image& frame, const std_msgs::Header& header, const Request& request);
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request>;
+
+  Options options_;
+  ::ros::NodeHandle node_;
+  Health health_;
+  ActingPolicy policy_;
+  std::string weights_id_;
+  Action answer_;              // to the image before
+  bool answer_valid_ = false;  // with the weights of now
+  sensor_msgs::CameraInfoConstPtr camera_info_;
+  ::ros::WallTime annotated_;
+  double latency_sec_ = 0;  // of the last decision
+
+  image_transport::ImageTransport image_transport_;
+  image_transport::Publisher annotated_publisher_;
+  ::ros::Publisher action_publisher_;
+  ::ros::Publisher status_publisher_;
+  ::ros::Subscriber camera_info_subscriber_;
+  ::ros::Subscriber weights_subscriber_;
+  ::ros::ServiceServer load_server_;
+  ::ros::ServiceServer save_server_;
+  image_transport::SubscriberFilter image_subscriber_;
+  message_filters::Subscriber<Request> request_subscriber_;
+  message_filters::Synchronizer<SameStamp> synchronizer_;
+};
+
+}  // namespace early_fusion::nodes

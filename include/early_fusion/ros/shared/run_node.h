@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "early_fusion/core/options.h"
+#include "early_fusion/ros/shared/parameters.h"
+
+namespace early_fusion::nodes {
+
+/// The one place where a node is initialised and what it throws is caught.
+///
+/// --help prints the options as parameters. An exception is logged as ROS_FATAL and, where a launch file has set the
+/// parameter `session_failure` (see SessionMonitorNode), noted there, so that a session of respawned nodes ends instead
+/// of respawning for ever a node that cannot run.
+/// @param run reads the parameters, constructs the node and spins.
+/// @return the process's exit code.
+int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
+            const std::function<void()>& run);
+
+/// main() of a node class that has a nested Options struct and a constructor from it.
+template <class Node>
+int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& spin) {
+  typename Node::Options options;
+  core::OptionSet set = options.options();
+  return runNode(argc, argv, name, set, [&] {
+    setFromParameters(set, privateParameters(set));
+    Node node(options);
+    spin();
+  });
+}
+
+}  // namespace early_fusion::nodes

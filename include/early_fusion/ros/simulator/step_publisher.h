@@ -1,0 +1,61 @@
+#pragma once
+
+#include <early_fusion/Request.h>
+#include <early_fusion/Scene.h>
+#include <image_transport/image_transport.h>
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <string>
+
+#include "early_fusion/render/rasterizer.h"
+#include "early_fusion/ros/shared/conversions.h"
+
+namespace early_fusion::nodes {
+
+/// Draws a step of an episode and publishes it as a robot would: image, camera_info, request, scene and joint states
+/// with one stamp; the objects as markers for whoever looks.
+class StepPublisher {
+ public:
+  /// @param marker_rate_hz how often at most the markers are published.
+  StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const world::World> world, double marker_rate_hz);
+
+  /// @param previous_action the name of the action that led to this state; empty at step 0.
+  /// @return the stamp, later than every one before it.
+  ::ros::Time publish(const sim::Episode& episode, const sim::EpisodeKey& key, const std::string& previous_action);
+
+  /// The step published last once more, with its stamp, for a policy that has missed it.
+  void publishAgain();
+
+  void publishResult(const sim::Episode& episode, const sim::EpisodeKey& key);
+
+  /// The joint states as they stand, with the time of now: tf goes on while nothing is played.
+  void publishJointStates();
+
+ private:
+  ::ros::Time nextStamp();
+  void publishMarkers(const sim::Episode& episode, ::ros::Time stamp);
+
+  std::shared_ptr<const world::World> world_;
+  render::Rasterizer rasterizer_;
+  ::ros::WallDuration marker_period_;
+  ::ros::WallTime last_markers_;
+  ::ros::Time last_stamp_;
+  world::Orientation orientation_;
+
+  image_transport::ImageTransport image_transport_;
+  image_transport::CameraPublisher camera_publisher_;
+  ::ros::Publisher request_publisher_;
+  ::ros::Publisher scene_publisher_;
+  ::ros::Publisher joint_publisher_;
+  ::ros::Publisher episode_publisher_;
+  ::ros::Publisher marker_publisher_;
+
+  // What was published last.
+  sensor_msgs::ImageConstPtr image_;
+  sensor_msgs::CameraInfoConstPtr camera_info_;
+  RequestConstPtr request_;
+  SceneConstPtr scene_;
+};
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <string>
+
+#include "early_fusion/learning/evaluation.h"
+#include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/trainer/rollout_client.h"
+
+namespace early_fusion::nodes {
+
+/// Scores whatever policy is running on episodes of a task, and ends: the same episodes and scores as the command
+/// line's `evaluate`.
+class EvaluatorNode {
+ public:
+  struct Options {
+    std::string world;
+    std::string task = "simple";
+    std::uint64_t seed = learning::kHeldOutSeed;
+    int episodes = 500;
+    std::string result;
+    double stall_sec = 10;
+    double diagnostic_period_sec = 1;
+
+    core::OptionSet options();
+  };
+
+  /// Shuts ROS down when the last episode has been scored.
+  explicit EvaluatorNode(const Options& options);
+
+ private:
+  void startWhenPolicyIsThere();
+  void finish();
+
+  Options options_;
+  ::ros::NodeHandle node_;
+  std::shared_ptr<const world::World> world_;
+  Health health_;
+  RolloutClient client_;
+  learning::Evaluation evaluation_;
+  ::ros::WallTimer start_timer_;
+};
+
+}  // namespace early_fusion::nodes

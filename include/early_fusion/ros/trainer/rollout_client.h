@@ -1,0 +1,87 @@
+#pragma once
+
+#include <actionlib/client/simple_action_client.h>
+#include <early_fusion/PolicyStatus.h>
+#include <early_fusion/RunEpisodesAction.h>
+#include <image_transport/image_transport.h>
+#include <image_transport/subscriber_filter.h>
+#include <message_filters/subscriber.h>
+#include <message_filters/sync_policies/exact_time.h>
+#include <message_filters/synchronizer.h>
+#include <ros/node_handle.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/trainer/rollout_recorder.h"
+
+namespace early_fusion::nodes {
+
+/// Has episodes played by the simulator and the policy, and hands back labelled trajectories; publishes the expert's
+/// opinion of every step on the way.
+///
+/// Both nodes may die and come back: what was missed is asked for again. Event-driven, in the thread that spins.
+class RolloutClient {
+ public:
+  /// @param stall_sec after so long without a step of an episode asked for, it is asked for again.
+  /// `world` and `health` must outlive the client.
+  RolloutClient(::ros::NodeHandle& node, const world::World& world, double stall_sec, Health& health);
+
+  /// Begins a plan as soon as a policy acts with its weights; a plan at hand is given up.
+  /// @param on_trajectory called with each trajectory, in order.
+  /// @param on_done called after the last one, when the simulator has ended the goal; may start the next plan.
+  void start(const RolloutPlan& plan, std::function<void(learning::Trajectory)> on_trajectory,
+             std::function<void()> on_done);
+
+  /// The policy node's latest status; nullptr before the first.
+  const PolicyStatus* policyStatus() const { return policy_status_.get(); }
+
+  /// Whether a plan is at hand.
+  bool busy() const { return phase_ != Phase::kIdle; }
+
+  /// What is being waited for, for people: "the simulator that publishes scene", "episodes 3 to 49".
+  std::string waitsFor() const;
+
+ private:
+  enum class Phase { kIdle, kWaiting, kPlaying };
+
+  void onStep(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request, const SceneConstPtr& scene,
+              const ActionConstPtr& action);
+  void onGoalDone(const actionlib::SimpleClientGoalState& state);
+  void publishExpert(const learning::TrajectoryStep& step, const Scene& scene);
+  void supervise();
+  void askWhenReady();
+  void finishWhenDone();
+  /// Empty when nothing keeps the plan from being played.
+  std::string obstacle() const;
+
+  using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request, Scene, Action>;
+
+  const world::World& world_;
+  ::ros::WallDuration stall_;
+  Health& health_;
+
+  Phase phase_ = Phase::kIdle;
+  RolloutPlan plan_;
+  std::unique_ptr<RolloutRecorder> recorder_;
+  std::function<void(learning::Trajectory)> on_trajectory_;
+  std::function<void()> on_done_;
+  bool goal_done_ = false;
+  ::ros::WallTime last_news_;  // of the plan: begun, sent as a goal, a step, done
+
+  PolicyStatusConstPtr policy_status_;
+  ::ros::Subscriber policy_status_subscriber_;
+  ::ros::Publisher expert_publisher_;
+  image_transport::ImageTransport image_transport_;
+  image_transport::SubscriberFilter image_subscriber_;
+  message_filters::Subscriber<Request> request_subscriber_;
+  message_filters::Subscriber<Scene> scene_subscriber_;
+  message_filters::Subscriber<Action> action_subscriber_;
+  message_filters::Synchronizer<SameStamp> synchronizer_;
+  actionlib::SimpleActionClient<RunEpisodesAction> goal_client_;
+  ::ros::WallTimer timer_;
+};
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+
+#include "early_fusion/learning/training_session.h"
+#include "early_fusion/ros/trainer/trainer_node.h"
+
+namespace early_fusion::nodes {
+
+/// The trainer's options: the defaults, the preset, and the private ROS parameters, in this order. Needs ros::init()
+/// and a master.
+/// @throws core::Error naming the parameter or the preset's key, its value and the allowed range.
+TrainerNode::Options loadTrainerOptions();
+
+/// Starts the session. A trainer that is respawned in the same launch goes on with it, whatever options.resume says.
+/// @throws core::Error as learning::TrainingSession and world::loadWorld().
+std::unique_ptr<learning::TrainingSession> startSession(learning::SessionOptions options);
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <string>
+
+#include "early_fusion/learning/training_session.h"
+#include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/trainer/rollout_workers.h"
+
+namespace early_fusion::nodes {
+
+/// Oracle and trainer: has episodes played, labels them with the expert, trains on them in rounds, publishes the
+/// weights, and in the end scores them on held-out episodes.
+///
+/// What it learns is what the command line's `train` learns with the same options, bit for bit. It goes on from its
+/// checkpoint when it is respawned. Training runs in a thread of its own; everything else in the one that spins.
+class TrainerNode {
+ public:
+  struct Options {
+    learning::SessionOptions session;
+    int workers = 1;
+    double stall_sec = 10;
+    double progress_period_sec = 1;
+    double diagnostic_period_sec = 1;
+
+    core::OptionSet options();
+  };
+
+  /// @param session to bring to its end; started with options.session, see startSession().
+  TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session);
+
+  /// Gives up the round that is being trained: its trajectories are rolled out again by whoever resumes the session.
+  ~TrainerNode();
+
+ private:
+  void goOn();
+  void rollOut();
+  void train();
+  void onRoundTimer();
+  void evaluate();
+  void finish();
+
+  void publishWeights(const std::string& mode, std::uint64_t seed);
+  /// Publishes the weights as they stand and has the plan's episodes played with them.
+  /// @param plan without task, weights and training expert, which are the session's.
+  void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
+  void enterStage(const std::string& stage);
+  /// [0, 1]
+  double stageDone() const;
+  void publishProgress();
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  ::ros::NodeHandle node_;
+  std::unique_ptr<learning::TrainingSession> session_;
+  Health health_;
+  RolloutWorkers workers_;
+  ::ros::Publisher progress_publisher_;
+  ::ros::WallTimer progress_timer_;
+  ::ros::WallTimer round_timer_;
+
+  std::string stage_;
+  learning::Progress progress_;  // of the session when it was last at rest: a round's thread writes to the session
+  ::ros::WallTime progress_taken_;
+  std::string weights_id_;
+  std::atomic<double> round_done_{0};  // [0, 1] of the round that is being trained
+  learning::Evaluation evaluation_;
+  std::atomic<bool> stop_{false};
+  std::future<learning::RoundStatistics> round_;
+};
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,61 @@
+#include "early_fusion/ros/policy/acting_policy.h"
+
+#include <cassert>
+
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/saliency.h"
+
+namespace early_fusion::nodes {
+
+void ActingPolicy::load(nn::WeightsFile file, const std::string& source, const Acting& acting) {
+  const model::ActionChoice choice = model::actionChoiceFromName(acting.mode);
+  std::unique_ptr<model::GoalPolicy> policy = model::loadPolicy(file, source, acting.precision);
+  if (policy_ && policy_->options().image_size != policy->options().image_size) frames_.clear();
+  file_ = std::move(file);
+  policy_ = std::move(policy);
+  acting_ = acting;
+  choice_ = choice;
+}
+
+model::Observation ActingPolicy::observation() const {
+  model::Observation observation;
+  observation.request = &request_;
+  observation.frames = core::frameStack(frames_.size() - 1, [this](std::size_t at) { return frames_[at].rgb.data(); });
+  return observation;
+}
+
+void ActingPolicy::remember(const core::Image& frame, std::uint64_t episode, std::uint32_t step) {
+  const bool again = episode == episode_ && step == step_ && !frames_.empty();
+  const bool follows = episode == episode_ && step == step_ + 1;
+  if (again) {
+    frames_.back() = frame;
+  } else {
+    if (!follows || step == 0) frames_.clear();
+    frames_.push_back(frame);
+  }
+  if (frames_.size() > core::kStackedFrames) frames_.pop_front();
+  episode_ = episode;
+  step_ = step;
+}
+
+Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
+                              std::uint32_t step) {
+  assert(loaded() && frame.width == imageSize() && frame.height == imageSize());
+  request_ = policy_->vocabulary().request(items);
+  remember(frame, episode, step);
+  policy_->predict({observation()}, probabilities_);
+  Decision decision;
+  decision.action = model::chooseAction(probabilities_.row(0), choice_, acting_.seed, episode, step);
+  decision.probabilities.assign(probabilities_.data(), probabilities_.data() + core::kActionCount);
+  decision.frames = static_cast<int>(frames_.size());
+  return decision;
+}
+
+core::Image ActingPolicy::lastImageWithSaliency(int grid) {
+  assert(!frames_.empty());
+  core::Image image = frames_.back();
+  model::tint(image, model::occlusionSaliency(*policy_, observation(), grid));
+  return image;
+}
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,188 @@
+#include "early_fusion/ros/policy/policy_node.h"
+
+#include <early_fusion/PolicyStatus.h>
+
+#include <cstdio>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/model/action_choice.h"
+#include "early_fusion/model/annotation.h"
+#include "early_fusion/ros/shared/camera_image.h"
+#include "early_fusion/ros/shared/conversions.h"
+#include "early_fusion/ros/shared/topics.h"
+#include "early_fusion/sim/cone_table.h"
+
+namespace early_fusion::nodes {
+
+namespace {
+
+// A camera sends many images for each that is asked about; those wait here for a request of their stamp.
+constexpr int kImageQueue = 30;
+
+}  // namespace
+
+core::OptionSet PolicyNode::Options::options() {
+  core::OptionSet set("policy");
+  set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
+  set.addChoice("mode", acting.mode, model::actionChoiceNames(),
+                "with weights from a file: the likeliest action, or drawn");
+  set.add("seed", acting.seed, "of the draws in mode 'sample'");
+  set.addChoice("precision", acting.precision, model::precisionNames(),
+                "of the arithmetic with weights from a file; auto: bf16 where the processor has it natively");
+  set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
+  set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
+  set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");
+  set.add("saliency_grid", saliency_grid, 0, 64, "cells",
+          "along an edge of the saliency map that tints the annotated image; costs its square in predictions; 0: none");
+  addDiagnosticPeriod(set, diagnostic_period_sec);
+  return set;
+}
+
+PolicyNode::PolicyNode(const Options& options)
+    : options_(options),
+      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
+      image_transport_(node_),
+      annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
+      action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
+      status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)),
+      synchronizer_(SameStamp(kImageQueue)) {
+  if (!options_.weights.empty()) loadFile(options_.weights);
+  publishStatus();
+  load_server_ = node_.advertiseService(kLoadWeightsService, &PolicyNode::onLoadWeights, this);
+  save_server_ = node_.advertiseService(kSaveWeightsService, &PolicyNode::onSaveWeights, this);
+  weights_subscriber_ =
+      node_.subscribe<Weights>(kWeightsTopic, 1, [this](const WeightsConstPtr& message) { onWeights(*message); });
+  camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
+      kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) { camera_info_ = message; });
+  const auto hints = ::ros::TransportHints().tcpNoDelay();
+  synchronizer_.connectInput(image_subscriber_, request_subscriber_);
+  synchronizer_.registerCallback(&PolicyNode::onImage, this);
+  request_subscriber_.subscribe(node_, kRequestTopic, kImageQueue, hints);
+  image_subscriber_.subscribe(image_transport_, kImageTopic, kImageQueue,
+                              image_transport::TransportHints(options_.image_transport, hints));
+}
+
+void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request) {
+  const ::ros::WallTime began = ::ros::WallTime::now();
+  health_.count("images");
+  if (!policy_.loaded()) {
+    return health_.drop("image without weights",
+                        "no weights yet: give ~weights, call 'load_weights', or publish them on 'weights'");
+  }
+  const bool again = answer_valid_ && answer_.header.stamp == request->header.stamp &&
+                     answer_.episode == request->episode && answer_.step == request->step;
+  if (again) return action_publisher_.publish(answer_);
+  core::Image frame;
+  Decision decision;
+  try {
+    const int edge = cropEdge(*image, camera_info_.get(), policy_.horizontalFovDeg());
+    frame = policyImage(image, edge, policy_.imageSize());
+  } catch (const core::Error& error) {
+    return health_.drop("unusable image", error.what());
+  }
+  try {
+    decision = policy_.decide(frame, request->items, request->episode, request->step);
+  } catch (const core::Error& error) {
+    return health_.drop("unusable request", error.what());
+  }
+  answer_.header = image->header;
+  answer_.episode = request->episode;
+  answer_.step = request->step;
+  answer_.name = core::actionName(decision.action);
+  answer_.probabilities = decision.probabilities;
+  answer_.weights = weights_id_;
+  answer_.mode = policy_.acting().mode;
+  answer_.frames = static_cast<std::uint8_t>(decision.frames);
+  answer_valid_ = true;
+  action_publisher_.publish(answer_);
+  latency_sec_ = (::ros::WallTime::now() - began).toSec();
+  publishAnnotated(frame, image->header, *request);
+}
+
+void PolicyNode::onWeights(const Weights& message) {
+  try {
+    const std::string bytes(message.data.begin(), message.data.end());
+    const std::string source = "weights '" + message.id + "' from topic " + weights_subscriber_.getTopic();
+    load(message.id, nn::WeightsFile::parse(bytes, source), source, {message.mode, message.seed, message.precision});
+  } catch (const core::Error& error) {
+    health_.drop("unusable weights", error.what());
+  }
+}
+
+void PolicyNode::load(const std::string& id, nn::WeightsFile file, const std::string& source, const Acting& acting) {
+  policy_.load(std::move(file), source, acting);
+  weights_id_ = id;
+  answer_valid_ = false;
+  health_.count("weights loaded");
+  publishStatus();
+}
+
+void PolicyNode::loadFile(const std::string& path) {
+  nn::WeightsFile file = nn::WeightsFile::read(path);
+  const auto id = file.metadata.find("id");
+  load(id == file.metadata.end() ? path : id->second, std::move(file), path, options_.acting);
+  ROS_INFO("acting with weights '%s' from %s", weights_id_.c_str(), path.c_str());
+}
+
+bool PolicyNode::onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response) {
+  try {
+    loadFile(request.path);
+    response.success = true;
+    response.message = "acting with weights '" + weights_id_ + "'";
+  } catch (const core::Error& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool PolicyNode::onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response) {
+  try {
+    if (!policy_.loaded()) throw core::Error("there are no weights to save yet");
+    policy_.file().write(request.path);
+    response.success = true;
+    response.message = "wrote weights '" + weights_id_ + "' to " + request.path;
+  } catch (const core::Error& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+void PolicyNode::publishStatus() {
+  PolicyStatus status;
+  status.header.stamp = ::ros::Time::now();
+  status.weights = weights_id_;
+  if (policy_.loaded()) {
+    status.kind = policy_.policy().options().kind;
+    status.vocabulary = policy_.policy().vocabulary().names();
+    status.mode = policy_.acting().mode;
+    status.seed = policy_.acting().seed;
+    status.precision = policy_.policy().options().precision;
+  }
+  status_publisher_.publish(status);
+}
+
+void PolicyNode::publishAnnotated(const core::Image& frame, const std_msgs::Header& header, const Request& request) {
+  if (annotated_publisher_.getNumSubscribers() == 0) return;
+  const ::ros::WallTime now = ::ros::WallTime::now();
+  if (now - annotated_ < ::ros::WallDuration(1 / options_.annotated_rate_hz)) return;
+  annotated_ = now;
+  model::Annotation annotation;
+  annotation.cone_radius_px =
+      model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, frame.width);
+  annotation.request = request.items;
+  annotation.action = answer_.name;
+  const core::Image picture =
+      options_.saliency_grid > 0 ? policy_.lastImageWithSaliency(options_.saliency_grid) : frame;
+  annotated_publisher_.publish(imageMessage(model::annotate(picture, annotation, options_.annotated_scale), header));
+}
+
+void PolicyNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  status.add("weights", weights_id_.empty() ? "none yet" : weights_id_);
+  status.add("mode", policy_.acting().mode);
+  status.addf("decision time [ms]", "%.2f", latency_sec_ * 1e3);
+  if (!policy_.loaded()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "no weights yet");
+}
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,55 @@
+#include "early_fusion/ros/shared/run_node.h"
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/param.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <iostream>
+
+#include "early_fusion/ros/shared/topics.h"
+
+namespace early_fusion::nodes {
+
+namespace {
+
+bool wantsHelp(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return true;
+  }
+  return false;
+}
+
+void reportFailure(const std::string& reason) {
+  ROS_FATAL("%s", reason.c_str());
+  // Of the session that the node is part of, in its namespace or one above; a node beside it must not end it.
+  std::string parameter;
+  if (std::getenv(kSessionVariable) != nullptr && ::ros::isInitialized() &&
+      ::ros::param::search(kFailureParameter, parameter)) {
+    ::ros::param::set(parameter, reason);
+  }
+}
+
+}  // namespace
+
+int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
+            const std::function<void()>& run) {
+  if (wantsHelp(argc, argv)) {
+    std::cout << name << "_node [_parameter:=value ...] [topic:=other_topic ...]\nPrivate parameters:\n"
+              << describeParameters(options);
+    return 0;
+  }
+  try {
+    ::ros::init(argc, argv, name);
+    ::ros::start();  // or else the console would end with the node's last handle, and with it the reason of a failure
+    run();
+    return 0;
+  } catch (const std::exception& error) {
+    reportFailure(error.what());
+    return 1;
+  }
+}
+
+}  // namespace early_fusion::nodes
