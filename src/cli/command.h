@@ -14,14 +14,14 @@ void addRender(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);
 
-/// Declares a flag for every option of `set`, "--learning-rate" for learning_rate; what is given lands in `given`,
-/// which must outlive the app.
+/// Declares a flag for every option of `set`, such as "--learning-rate" for learning_rate. The given values are added
+/// to `given`, which must outlive the app.
 void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given);
 
 /// Writes to the file, or to standard output when it is "-".
 void writeTo(const std::string& file, const std::string& text);
 
-/// Whether standard error is a terminal, on which a line may be written over.
+/// Whether standard error is a terminal, where a line can be overwritten.
 bool onTerminal();
 
 }  // namespace early_fusion::cli

@@ -8,7 +8,7 @@
 
 namespace early_fusion::cli {
 
-/// An agent with what it needs to live.
+/// An agent and the policy that it uses.
 struct NamedAgent {
   std::unique_ptr<model::GoalPolicy> policy;  ///< null for agents without weights
   std::unique_ptr<learning::Agent> agent;
@@ -16,7 +16,7 @@ struct NamedAgent {
 
 /// @param name expert, searching, random, idle, or a weights file.
 /// @param mode one of model::actionChoiceNames(), for a weights file.
-/// @throws Error when the file is no policy, or knows other items than the world has.
+/// @throws Error if the file is not a policy or has other items than the world.
 NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std::uint64_t seed,
                           const world::World& world);
 

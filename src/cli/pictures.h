@@ -24,11 +24,11 @@ struct PictureStyle {
 
 core::Image drawStep(const world::World& world, const PlayedStep& step, const PictureStyle& style);
 
-/// A sheet of images, row by row: the first step, the last one, and those between at which something was taken or that
-/// are evenly spread.
+/// A sheet of frames, row by row: the first step, the last step, all steps that took an object, and steps at regular
+/// intervals between.
 core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style);
 
-/// A sheet with every object of the set alone on the counter, its name below.
+/// A sheet with each object of the set alone on the counter and its name below.
 core::Image drawObjects(const world::World& world, const PictureStyle& style);
 
 }  // namespace early_fusion::cli

@@ -55,7 +55,7 @@ void writePng(const std::string& file, const core::Image& image) {
   writeTo(file, std::string(png.begin(), png.end()));
 }
 
-/// Plays the whole episode and keeps what each step looked like to the rules.
+/// Plays the whole episode and stores the state of each step.
 std::vector<PlayedStep> play(const RenderOptions& options, const world::World& world, const sim::Task& task) {
   NamedAgent named = makeNamedAgent(options.policy, "argmax", options.seed, world);
   std::vector<PlayedStep> played;

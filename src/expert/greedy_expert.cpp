@@ -27,7 +27,7 @@ class Searcher {
   Searcher(const sim::ConeTable& cone, sim::InstanceMask present, world::Orientation from)
       : cone_(cone), present_(present), from_(from), nearest_now_(cone.nearest(from, present)) {}
 
-  /// The cheapest ways to `instance`, where they cost no more than `best`, added to it; else `best` stays as it is.
+  /// Adds the shortest ways to `instance` to `best` if they are not longer than it; else leaves `best` unchanged.
   void search(int instance, Search& best) const {
     for (world::Orientation to : cone_.orientationsOf(instance)) {
       const int moves = std::abs(to.pan - from_.pan) + std::abs(to.tilt - from_.tilt);
@@ -48,8 +48,8 @@ class Searcher {
   }
 
  private:
-  /// An occluder can be removed from wherever it is the nearest: here too, if it must go anyway. It is never a
-  /// requested one, which would itself be cheaper to reach.
+  /// An occluder can be removed at any orientation at which it is the nearest, so also here. It is never a requested
+  /// instance, because that would be closer itself.
   ActionSet firstActions(world::Orientation to, bool occluded_by_nearest_now, int steps) const {
     if (steps == 1) return bit(Action::kCollect);
     ActionSet actions = occluded_by_nearest_now ? bit(Action::kRemove) : ActionSet{0};

@@ -9,10 +9,10 @@ namespace {
 
 using core::Action;
 
-constexpr int kRimSteps = 2;               // at the picture's rim, where no more than an object's edge is to be seen
-constexpr std::size_t kOccluderSize = 60;  // orientations: some 9 by 9 degrees, and the cone's 3 all round
+constexpr int kRimSteps = 2;               // at the frame's border, where only the edge of an object is visible
+constexpr std::size_t kOccluderSize = 60;  // orientations: about 9 by 9 degrees, plus the cone's 3 on each side
 
-/// How many steps from the optical axis an object is in view.
+/// The maximum number of steps from the optical axis at which an object counts as in view.
 int reach(const sim::ConeTable& cone) { return cone.viewSteps() - kRimSteps; }
 
 Action search(const sim::ConeTable& cone, world::Orientation orientation, Heading heading) {
@@ -22,17 +22,17 @@ Action search(const sim::ConeTable& cone, world::Orientation orientation, Headin
   const Heading farther_end = orientation.pan > middle.pan ? Heading::kRight : Heading::kLeft;
   if (heading == Heading::kStart) heading = nearer_end;
   if (heading == Heading::kNone) heading = farther_end;
-  // Here the view holds all to that side, and objects there have come into it far enough to go on.
+  // At these pans the view holds everything on that side, far enough inside the frame to count as in view.
   const int turn = cone.viewSteps() + 1, leftmost = highest.pan - turn, rightmost = lowest.pan + turn;
   const bool all_seen = heading == Heading::kLeft ? orientation.pan >= leftmost : orientation.pan <= rightmost;
   if (!all_seen) return heading == Heading::kLeft ? Action::kPanLeft : Action::kPanRight;
-  // In between the view holds front and back; where it can't hold both, the middle.
+  // Tilt to where the view holds the counter's front and back; if it cannot hold both, to the middle.
   if (orientation.tilt > std::max(middle.tilt, lowest.tilt + reach(cone))) return Action::kTiltUp;
   if (orientation.tilt < std::min(middle.tilt, highest.tilt - reach(cone))) return Action::kTiltDown;
   return heading == Heading::kLeft ? Action::kPanRight : Action::kPanLeft;
 }
 
-/// Whether an instance is so large, as seen from the camera, that another may be hidden behind it.
+/// Whether an instance looks so large from the camera that another may be hidden behind it.
 bool isOccluder(const sim::ConeTable& cone, int instance) {
   return cone.orientationsOf(instance).size() >= kOccluderSize;
 }

@@ -40,7 +40,7 @@ class PolicyAgent : public Agent {
   std::map<std::uint64_t, Row> last_;  // probabilities by episode: a step that repeats the one before has the same
 };
 
-/// An agent that treats every situation on its own.
+/// An agent that decides on each situation separately.
 class SimpleAgent : public Agent {
  public:
   using Rule = std::function<core::Action(const Situation&)>;

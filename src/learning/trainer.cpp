@@ -178,8 +178,9 @@ void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& sour
   std::unique_ptr<model::TrainablePolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
   const Eigen::Index size = acting->parameters().values().size();
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
-    throw core::Error(source + ": its policy is another, of the items " + core::joined(loaded->vocabulary().names()) +
-                      "; resume with the objects and the policy that the session was started with, or start another");
+    throw core::Error(source + ": its policy has other items or another network; its items are " +
+                      core::joined(loaded->vocabulary().names()) +
+                      "; resume with the session's objects and policy options, or start a new session");
   }
   acting = std::move(loaded);
   if (!averaged_) return;

@@ -90,7 +90,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   std::error_code ignored;  // the first write reports it
   const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
   if (there && !options_.resume) {
-    throw core::Error(options_.output + ": holds a training session already; resume it, or choose another folder");
+    throw core::Error(options_.output + ": holds a training session; resume it or choose another folder");
   }
   if (there) {
     resume();

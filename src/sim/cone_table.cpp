@@ -13,10 +13,10 @@ namespace early_fusion::sim {
 
 namespace {
 
-/// What one hull looks like from the camera's centre.
+/// One hull as seen from the camera's centre.
 struct View {
   Eigen::Vector3d direction;  ///< to the middle of the hull
-  double widest_cosine;       ///< a cone whose axis is farther from it than this cannot meet the hull
+  double widest_cosine;       ///< cosine of the largest angle to `direction` at which the cone can meet the hull
   double distance;            ///< to the hull; 0 with the camera inside, and then there is no outline
   std::optional<Silhouette> outline;
 };
@@ -39,8 +39,8 @@ bool inCone(const View& view, const Eigen::Vector3d& axis) {
   return !view.outline || view.outline->meetsCone(axis, kConeHalfAngleRad);
 }
 
-/// The views of all hulls, worked out anew only when the camera's centre has moved: where the pan and tilt axes meet in
-/// the camera, that is once per scene.
+/// The views of all hulls. They are computed again only if the camera's centre has moved: once a scene if the pan and
+/// tilt axes meet in the camera's centre.
 class Views {
  public:
   Views(const world::World& world, const std::vector<Instance>& instances) {

@@ -15,7 +15,7 @@ namespace {
 constexpr int kTriesPerInstance = 200;
 constexpr int kTriesPerScene = 50;
 
-/// Objects that stand already, and whether one more may stand beside them.
+/// The objects placed so far; tests whether one more fits.
 class CounterTop {
  public:
   explicit CounterTop(const world::World& world) : world_(world) {}

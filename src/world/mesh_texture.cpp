@@ -31,7 +31,7 @@ Texture plainTexture(const aiMaterial& material) {
   return {kPlainSize, std::vector<std::uint32_t>(kPlainSize * kPlainSize, packColor(color.r, color.g, color.b))};
 }
 
-/// Area filter where the picture shrinks, so that fine print turns to grey and not to noise.
+/// Uses an area filter to shrink a texture, so that fine print becomes grey instead of noise.
 Texture squareTexture(const cv::Mat& bgr) {
   const int longest = std::max(bgr.cols, bgr.rows);
   int size = 1;
@@ -90,7 +90,7 @@ cv::Mat readPicture(const aiScene& scene, const std::string& name, const std::st
                               ? cv::Mat()
                               : cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
   if (picture.empty()) {
-    throw core::Error(mesh_path + ": its texture " + file + " is not a picture that can be decoded; use PNG or JPEG");
+    throw core::Error(mesh_path + ": its texture " + file + " is not an image that can be decoded; use PNG or JPEG");
   }
   return picture;
 }

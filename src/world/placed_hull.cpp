@@ -10,8 +10,8 @@ namespace early_fusion::world {
 
 namespace {
 
-/// Bullet takes corners less than 0.01 of its units apart for one and shapes less than 0.0001 apart for touching, so
-/// one of its units is a centimetre here: a tenth of a millimetre and a micrometre.
+/// One of Bullet's units is a centimetre here. Bullet merges corners less than 0.01 units apart (0.1 mm) and treats
+/// shapes less than 0.0001 units apart (1 um) as touching.
 constexpr double kUnitsPerMetre = 100.0;
 
 /// How far a distance may lie above what its direction confirms: a hundredth of a millimetre [Bullet's unit], and a
@@ -40,9 +40,9 @@ btScalar gapAlong(const btVector3& along, const btConvexShape& a, const btConvex
 
 /// The smallest distance [Bullet's unit] between `a`, in the origin, and `b`; 0 where they meet. Both have margin 0.
 ///
-/// Now and then GJK stops early, on a flat simplex, and reports a distance that is too large, even for shapes that
-/// overlap. So a distance counts only when the gap along its direction confirms it; else GJK starts anew from
-/// elsewhere, and where no start helps, the widest gap that was found is the answer.
+/// GJK sometimes stops early on a flat simplex and reports a distance that is too large, even for shapes that overlap.
+/// So a distance is accepted only if the gap along its direction confirms it. Otherwise GJK starts again from another
+/// simplex. If no start helps, the result is the widest gap that was found.
 /// @param nearest the point of `a` nearest to `b`, set where the distance is not 0.
 double distanceBetween(const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin, btVector3* nearest) {
   constexpr int kTries = 12;

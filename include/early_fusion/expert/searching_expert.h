@@ -12,20 +12,19 @@ enum class Heading { kStart, kNone, kLeft, kRight };
 /// @param pans of the frames so far, the oldest first [steps]; only the last core::kStackedFrames count.
 Heading headingOver(const std::vector<int>& pans);
 
-/// Whether a picture taken from `orientation` shows more than the edge of an instance, occlusion aside.
+/// Whether a frame from `orientation` shows more than the edge of an instance, if nothing occluded it.
 bool isInView(const sim::ConeTable& cone, int instance, world::Orientation orientation);
 
-/// An expert that knows no more than a policy can: it goes greedily for the requested instances that are in view, and
-/// looks for the others.
+/// The label of the searching expert. It goes greedily for the requested instances in view and searches for the others.
 ///
-/// While none is in view it keeps to `heading`; where the view holds everything to that side, it turns round, after up
-/// to two tilts to where the view holds more of the counter's front and back. It starts with the nearer end, which is
-/// soon seen, and where it has no heading later, pans across the middle, away from where it most likely came from.
-/// Whatever in the cone is large enough to hide what it looks for, it removes. So every label is a function of the last
-/// few pictures. The greedy expert's way to what nobody can see is not: a policy that imitates it learns to turn to and
-/// fro wherever the next unseen object is as likely on either side.
+/// If no requested instance is in view, it keeps the pan direction. Where the view holds everything on that side, it
+/// tilts to where the view holds the counter's front and back, and turns round. At an episode's start it pans to the
+/// nearer end. If it has no pan direction later, it pans across the middle, because the camera most likely came from
+/// the nearer end. While it searches, it removes every object in the cone that is large enough to hide another.
 ///
-/// @param heading of the camera over the pictures that the policy sees.
+/// Each label is a function of the last few frames. The greedy expert's way to an unseen object is not: a policy that
+/// imitates it pans back and forth where the object is equally likely on either side.
+/// @param heading the camera's pan direction over the frames that the policy sees.
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
                      world::Orientation orientation, Heading heading, const core::Request& request);
 

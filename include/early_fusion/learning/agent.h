@@ -22,15 +22,15 @@ struct Situation {
   const sim::Episode* state = nullptr;                ///< the truth, for agents that may see it
   model::Observation observation;                     ///< for agents that may not
   bool repeats = false;                               ///< observation and request are those of the step before
-  expert::Heading heading = expert::Heading::kStart;  ///< over the observation's frames
+  expert::Heading heading = expert::Heading::kStart;  ///< the pan direction over the observation's frames
 };
 
-/// Decides what to do, in several episodes at once.
+/// Chooses actions in several episodes at once.
 class Agent {
  public:
   virtual ~Agent() = default;
 
-  /// @param actions one for each situation.
+  /// @param actions receives one action for each situation.
   virtual void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) = 0;
 
   /// Whether act() reads observation.frames: otherwise they may be missing.

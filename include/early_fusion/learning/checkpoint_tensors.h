@@ -10,8 +10,8 @@
 
 namespace early_fusion::learning {
 
-// How a checkpoint holds what is not a network's parameter. Every load throws core::Error naming `source`, the tensor
-// and what is wrong with it: missing, of another type, or of another size.
+// Tensors of a checkpoint that are not network parameters. Every load function throws core::Error, which names
+// `source`, the tensor and the fault: missing, wrong type or wrong size.
 
 nn::StoredTensor storeFloats(const Eigen::VectorXf& values);
 Eigen::VectorXf loadFloats(const nn::WeightsFile& file, const std::string& name, Eigen::Index size,

@@ -45,7 +45,7 @@ struct Evaluation {
 };
 
 /// Plays the first `episodes` episodes of the runner's task and seed.
-/// @param progress told after each episode how many are done.
+/// @param progress called after each episode with the number of finished episodes.
 Evaluation evaluate(RolloutRunner& runner, Agent& agent, int episodes, const std::string& policy_name,
                     const std::function<void(int done)>& progress = {});
 

@@ -9,10 +9,10 @@ namespace early_fusion::learning {
 
 struct CurvePoint {
   RoundStatistics round;
-  double elapsed_sec = 0;  ///< since the session's start, over all its runs
+  double elapsed_sec = 0;  ///< since the session's start, without the time between its runs
 };
 
-/// How a session's rounds went, as a CSV table with one row a round.
+/// The statistics of a session's rounds, as a CSV table with one row for each round.
 class LearningCurve {
  public:
   /// Reads what toCsv() wrote. @throws Error naming `source` and the line.

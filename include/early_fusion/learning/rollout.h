@@ -11,9 +11,10 @@
 
 namespace early_fusion::learning {
 
-/// Rolls episodes out in this process: a few in lockstep, drawn in parallel and decided on as one batch.
+/// Rolls out episodes in this process. A few episodes advance in lockstep: their frames are drawn in parallel, and the
+/// agent decides on all of them as one batch.
 ///
-/// The trajectories are the same bits for any number of threads and episodes in lockstep.
+/// The trajectories have the same bits for any number of threads and of episodes in lockstep.
 class RolloutRunner {
  public:
   /// `world` must outlive the runner. @param task, seed of the episodes, which differ in number.

@@ -16,26 +16,26 @@
 
 namespace early_fusion::learning {
 
-/// What one round of training did.
+/// The statistics of one round.
 struct RoundStatistics {
   std::uint64_t round = 0;         ///< from 1
   std::uint64_t trajectories = 0;  ///< seen so far
   double loss = 0;                 ///< mean over the round's training steps
   double learning_rate = 0;
-  double f1 = 0;         ///< mean over the round's new trajectories, as they were rolled out
-  double agreement = 0;  ///< likewise
+  double f1 = 0;         ///< mean over the round's rollouts
+  double agreement = 0;  ///< mean over the round's rollouts
 };
 
-/// Aggregates labelled trajectories and trains a policy on the most recent ones: the learner of the imitation loop
+/// The learner of the imitation loop: collects labelled trajectories and trains a policy on the most recent ones
 /// (Walsman et al. 2019, sec. IV-C, after Ross et al. 2011).
 ///
-/// Knows nothing of where trajectories come from. The same options, seed and trajectories give the same weights.
+/// It does not know where trajectories come from. The same options, seed and trajectories give the same weights.
 class Trainer {
  public:
   Trainer(const model::PolicyOptions& policy, const TrainingOptions& training, const core::Vocabulary& vocabulary,
           std::uint64_t seed);
 
-  /// The trajectory of episode number trajectoriesSeen(): they must come in order.
+  /// Adds the trajectory of the episode with number trajectoriesSeen(). Trajectories must come in order.
   void add(Trajectory trajectory);
 
   bool roundDue() const { return new_trajectories_ > 0 && new_trajectories_ >= newInRound(); }
@@ -43,7 +43,7 @@ class Trainer {
     return trajectoriesSeen() >= static_cast<std::uint64_t>(options_.trajectories) && !roundDue();
   }
 
-  /// How many trajectories are still to be added before the next round.
+  /// The number of trajectories to add before the next round.
   int missingInRound() const { return newInRound() - new_trajectories_; }
 
   /// Trains on the window. Call when roundDue(). @param progress told after every batch which share is done.

@@ -17,9 +17,10 @@
 
 namespace early_fusion::learning {
 
-/// A training session from first trajectory to final score: the trainer with its run folder, learning curve and clock.
+/// A training session from the first trajectory to the final score: the trainer with its run folder, learning curve and
+/// clock.
 ///
-/// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the policy as it stands),
+/// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the current policy),
 /// curve.csv, options.yaml and, at the end, result.json.
 class TrainingSession {
  public:
@@ -40,7 +41,7 @@ class TrainingSession {
   Trainer& trainer() { return *trainer_; }
   const Trainer& trainer() const { return *trainer_; }
 
-  /// Whether this object went on from a checkpoint.
+  /// Whether this object continued from a checkpoint.
   bool resumed() const { return resumed_; }
 
   /// Trains a round that is due, and writes the weights, the curve and the checkpoint.
@@ -57,7 +58,7 @@ class TrainingSession {
   std::string weightsPath() const;
   std::string resultPath() const;
 
-  /// Writes weights.safetensors and result.json: the evaluation, the session's options and its time.
+  /// Writes weights.safetensors, and result.json with the evaluation, the options and the elapsed time.
   void finish(const Evaluation& evaluation);
 
  private:
@@ -78,8 +79,8 @@ class TrainingSession {
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
-/// Runs a session to its end in this process: rolls out, trains, evaluates on held-out episodes.
-/// @param report told after every round, and during the final evaluation.
+/// Runs a session to its end in this process: rollouts, training, evaluation on held-out episodes.
+/// @param report called after every round and during the final evaluation.
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report);
 
 }  // namespace early_fusion::learning

@@ -24,14 +24,14 @@ inline constexpr int kMaxRequestsPerFrame = 8;
 
 /// One step of a rollout as training keeps it.
 struct TrajectoryStep {
-  /// RGB8 (image_size, image_size, 3). Where nothing has moved, the frame of the step before: the same memory.
+  /// RGB8 (image_size, image_size, 3). If nothing has changed, it shares the memory of the previous step's frame.
   std::shared_ptr<const std::vector<std::uint8_t>> frame;
-  core::Request request;  ///< that the policy was given
-  core::Action action;    ///< what it did
+  core::Request request;  ///< the policy's request
+  core::Action action;    ///< the policy's action
   expert::Label label;    ///< what the greedy expert would have done
   /// By the training expert: the policy's own request first, then others, kMaxRequestsPerFrame at most.
   std::vector<LabelledRequest> labelled_requests;
-  int nearest_item = -1;  ///< what COLLECT or REMOVE would take; -1 where nothing is in the cone
+  int nearest_item = -1;  ///< the item that COLLECT or REMOVE would take; -1 if the cone is empty
   bool repeats = false;   ///< observation and request are those of the step before
 };
 
@@ -54,10 +54,10 @@ struct EpisodeActions {
   std::vector<core::Action> actions;  ///< one a step
 };
 
-/// Who labels what a policy is trained on.
+/// The expert whose labels a policy learns.
 enum class TrainingExpert {
-  kGreedy,     ///< the paper's expert, which sees everything: expert::label()
-  kSearching,  ///< expert::searchingLabel(), which looks for what is not in view
+  kGreedy,     ///< the paper's expert, which knows the whole scene: expert::label()
+  kSearching,  ///< the expert that searches for objects out of view: expert::searchingLabel()
 };
 
 /// "greedy", "searching".
@@ -66,8 +66,8 @@ const std::vector<std::string>& trainingExpertNames();
 /// @throws Error naming the known ones.
 TrainingExpert trainingExpertFromName(const std::string& name);
 
-/// Turns the states of one episode into a labelled trajectory; the same class serves rollouts in one process and the
-/// trainer node, which sees the states as messages.
+/// Turns the states of one episode into a labelled trajectory. Rollouts in one process and the trainer node, which gets
+/// the states as messages, both use it.
 class TrajectoryRecorder {
  public:
   /// @param key of the episode: with the step, it decides which other requests a frame is labelled for.
@@ -75,19 +75,19 @@ class TrajectoryRecorder {
   TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
                      TrainingExpert training_expert = TrainingExpert::kGreedy);
 
-  /// Labels a state and keeps it; states must come in order from step 0.
+  /// Labels and stores a state. States must come in order from step 0.
   /// @return the step, valid until the next call. Its action is IDLE until setAction().
   const TrajectoryStep& record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame);
 
-  /// What the policy did in the state recorded last.
+  /// Sets the policy's action in the last recorded state.
   void setAction(core::Action action) { trajectory_.steps.back().action = action; }
 
   const Trajectory& trajectory() const { return trajectory_; }
 
-  /// Which way the camera was last panned, as far as the policy's frames tell at the state recorded last.
+  /// The pan direction over the policy's frames at the last recorded state.
   expert::Heading heading() const;
 
-  /// Hands the trajectory over; the recorder is empty afterwards.
+  /// Returns the trajectory. The recorder is empty afterwards.
   Trajectory finish(const sim::Score& score);
 
  private:

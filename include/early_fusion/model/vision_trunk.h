@@ -44,7 +44,7 @@ class VisionTrunk {
   virtual ~VisionTrunk() = default;
 
   virtual void initialise(core::Random& random) = 0;
-  /// To be called after the parameters (the running statistics) have changed.
+  /// Must be called after the parameters or the running statistics, respectively, have changed.
   virtual void loadWeights() = 0;
   virtual void loadRunningStatistics() = 0;
 

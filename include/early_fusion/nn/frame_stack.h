@@ -11,10 +11,12 @@ namespace early_fusion::nn {
 /// bfloat16 hold exactly.
 inline constexpr int kImageChannels = 3 * core::kStackedFrames;
 
-/// Of the newest frame the network sees (byte - kMiddleByte) * kByteScale, in [-2, 2), of each older one how the next
-/// differs from it, (next byte - byte) * kByteScale. About 0, because of inputs that are all positive about half of the
-/// first layer's channels start, and stay, below 0 on every image: dead after its ReLU. Differences, because three
-/// frames are nearly the same picture: any first layer can form them, but learns to see motion only slowly.
+/// The newest frame enters as (byte - kMiddleByte) * kByteScale, in [-2, 2). Each older frame enters as the difference
+/// to the next one, (next byte - byte) * kByteScale.
+///
+/// Inputs are centred about 0, because with positive inputs about half of the first layer's channels are negative on
+/// every frame, and stay dead after ReLU. Differences are used because neighbouring frames are nearly equal: a first
+/// layer can form the differences itself, but learns to do so only slowly.
 inline constexpr int kMiddleByte = 128;
 inline constexpr float kByteScale = 1.f / 64.f;
 

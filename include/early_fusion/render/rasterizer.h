@@ -10,10 +10,11 @@
 
 namespace early_fusion::render {
 
-/// Draws the world through the pan-tilt camera: perspective-correct mip-mapped textures, one light with a soft shadow,
-/// 2x2 samples a pixel. The same bits on every run, thread count and instruction set.
+/// Draws the world through the pan-tilt camera, with perspective-correct mip-mapped textures, one light with a soft
+/// shadow, and 2x2 samples a pixel. Frames have the same bits on every run and instruction set, with any number of
+/// threads.
 ///
-/// An instance belongs to one thread at a time; give every thread its own. Several may share a World.
+/// One thread at a time may use a rasterizer. Several rasterizers may share a World.
 class Rasterizer {
  public:
   /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], see core::addImageSize().
@@ -26,8 +27,8 @@ class Rasterizer {
   /// Sets which objects are drawn, and where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
   void setObjects(const std::vector<world::ObjectPose>& objects);
 
-  /// Costs a copy where neither the scene nor the camera has moved since the last picture.
-  /// @param world_from_camera optical frame (z forward, x right, y down) in the world.
+  /// Draws a frame. If neither the scene nor the camera has changed since the last frame, it is copied.
+  /// @param world_from_camera pose of the optical frame (z forward, x right, y down) in the world.
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image);
 
  private:

@@ -10,17 +10,17 @@ namespace early_fusion::sim {
 /// Half-angle of the cone about the optical axis within which COLLECT and REMOVE act (Walsman et al. 2019, sec. IV-A).
 inline constexpr double kConeHalfAngleRad = 3.0 * 3.14159265358979323846 / 180.0;
 
-/// Which instances the camera could take at every orientation: those whose hull meets the cone, nearest first.
+/// For every orientation, the instances whose hull meets the cone, nearest first.
 ///
-/// Computed once per scene and then only looked up: the rules of an episode and the expert's search
-/// both read this table, so they cannot disagree.
+/// It is computed once for each scene. The rules of an episode and the experts read the same table, so they cannot
+/// disagree.
 class ConeTable {
  public:
   ConeTable(const world::World& world, const std::vector<Instance>& instances);
 
   const world::OrientationLattice& lattice() const { return lattice_; }
 
-  /// How many steps the picture reaches to each side of the optical axis.
+  /// The number of steps from the optical axis to the frame's edge.
   int viewSteps() const { return view_steps_; }
 
   /// Instance indices in the cone, by increasing distance from the camera centre to the hull (ties: lower index).
@@ -38,8 +38,8 @@ class ConeTable {
   /// All orientations at which an instance is in the cone.
   const std::vector<world::Orientation>& orientationsOf(int instance) const { return orientations_of_[instance]; }
 
-  /// The share of those at which it is the nearest of `present`, of which it must be one: 0 where nothing but REMOVE
-  /// makes way to it, 1 where nothing stands before it. [0, 1]
+  /// Of orientationsOf(instance), the share at which `instance` is the nearest of `present`. `instance` must be
+  /// present. 0: fully occluded; 1: never occluded.
   double exposure(int instance, InstanceMask present) const;
 
  private:

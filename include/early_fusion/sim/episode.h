@@ -9,14 +9,14 @@
 
 namespace early_fusion::sim {
 
-/// How an episode went (Walsman et al. 2019, sec. IV-B). All in [0, 1].
+/// The score of an episode (Walsman et al. 2019, sec. IV-B). All in [0, 1].
 struct Score {
-  double precision = 0;  ///< collected that were requested / collected; 0 when nothing was collected
-  double recall = 0;     ///< requested that were collected / requested
-  double f1 = 0;         ///< 0 when nothing was collected
+  double precision = 0;  ///< requested objects collected / objects collected; 0 if none was collected
+  double recall = 0;     ///< requested objects collected / objects requested
+  double f1 = 0;         ///< 0 if nothing was collected
 };
 
-/// What changes from step to step.
+/// The part of an episode that changes from step to step.
 struct EpisodeState {
   int step = 0;
   world::Orientation orientation;
@@ -24,7 +24,7 @@ struct EpisodeState {
   core::Request request;  ///< still to collect and still in the scene
 };
 
-/// The rules of the game, without pictures.
+/// The rules of an episode, without rendering.
 class Episode {
  public:
   /// The episode that `key` names. `world` must outlive it. @throws Error as sampleEpisode().
@@ -36,16 +36,16 @@ class Episode {
   const EpisodeSetup& setup() const { return setup_; }
   const EpisodeState& state() const { return state_; }
   const ConeTable& cone() const { return *cone_; }
-  /// For who labels the episode's states after it is gone.
+  /// The same table, for users that outlive the episode, such as the labelling of its states.
   std::shared_ptr<const ConeTable> sharedCone() const { return cone_; }
 
   bool finished() const { return state_.step >= steps_; }
 
-  /// Carries out one action; every action costs a step. Must not be called when finished().
+  /// Carries out one action. Every action costs a step. Must not be called if finished().
   void step(core::Action action);
 
-  /// Asks for other items from here on (a user's request by hand). Items not in the scene are left out. The score's
-  /// recall then counts these and what had been collected of earlier requests.
+  /// Replaces the request from now on. Items that are not in the scene are left out. The score's recall then counts the
+  /// new request and the requested objects that were collected before.
   void setRequest(const core::Request& request);
 
   Score score() const;
@@ -60,7 +60,7 @@ class Episode {
   EpisodeState state_;
   std::shared_ptr<const ConeTable> cone_;
   int steps_;
-  core::Request outstanding_;  // requested and not yet collected, in the scene or not
+  core::Request outstanding_;  // requested and not yet collected, including objects that were removed
   int requested_ = 0;
   int collected_ = 0;
   int collected_requested_ = 0;

@@ -34,7 +34,7 @@ struct EpisodeKey {
   std::uint64_t number = 0;  ///< of the episode in the session, from 0
 };
 
-/// What an episode begins with, and what does not change in it.
+/// The initial state of an episode.
 struct EpisodeSetup {
   std::vector<Instance> instances;
   core::Request request;
@@ -48,7 +48,7 @@ std::vector<world::ObjectPose> presentObjects(const world::World& world, const s
                                               InstanceMask present);
 
 /// Draws types, collision-free poses, the request and the first orientation, each uniformly.
-/// @throws Error when the instances don't fit on the counter after many tries, naming how many were placed.
+/// @throws Error naming how many instances could be placed if they do not fit on the counter after many tries.
 EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random);
 
 /// The same with the key's own random stream.

@@ -10,14 +10,14 @@ namespace early_fusion::sim {
 /// A task file: how hard an episode is (Walsman et al. 2019, sec. IV-A). The defaults are those of SIMPLE.
 struct Task {
   std::string name = "custom";
-  int instances = 4;       ///< objects on the counter, types drawn with repetition, at most kMaxInstances
-  int most_instances = 0;  ///< no option, see withUpTo(): each episode draws its number from instances to these
+  int instances = 4;       ///< objects on the counter, items drawn with repetition; at most kMaxInstances
+  int most_instances = 0;  ///< not an option, see withUpTo(): each episode draws its number up to this
   int requested = 1;       ///< how many of the instances are requested
   int steps = 48;          ///< actions in an episode
 
   core::OptionSet options();
   int mostInstances() const { return most_instances > instances ? most_instances : instances; }
-  /// @throws Error when more are requested than there are.
+  /// @throws Error if more instances are requested than there are.
   void validate(const std::string& source) const;
 };
 
@@ -27,8 +27,8 @@ inline constexpr int kMaxInstances = 32;
 /// @throws Error naming file, key and value, or the known names.
 Task loadTask(const std::string& name_or_file);
 
-/// The task with scenes of up to `most` instances, too, to learn from; the task itself where that is no more than it
-/// has. @throws Error when it is more than kMaxInstances.
+/// The task for training episodes with up to `most` instances. The task itself if it has that many already.
+/// @throws Error if `most` is more than kMaxInstances.
 Task withUpTo(std::int64_t most, Task task);
 
 }  // namespace early_fusion::sim

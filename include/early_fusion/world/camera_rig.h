@@ -20,10 +20,10 @@ struct Orientation {
 inline bool operator==(Orientation a, Orientation b) { return a.pan == b.pan && a.tilt == b.tilt; }
 inline bool operator!=(Orientation a, Orientation b) { return !(a == b); }
 
-/// Where a move leads, joint limits aside; COLLECT, REMOVE and IDLE lead nowhere.
+/// The orientation after an action, without regard to joint limits. COLLECT, REMOVE and IDLE do not change it.
 Orientation turned(Orientation from, core::Action action);
 
-/// The orientations within the joint limits: every whole step inside them.
+/// All orientations of whole steps within the joint limits.
 struct OrientationLattice {
   Orientation lowest;
   Orientation highest;
@@ -40,8 +40,8 @@ struct OrientationLattice {
 /// A pan-tilt camera read from a URDF: any chain with a pan joint, then a tilt joint, then the optical frame.
 class CameraRig {
  public:
-  /// @param pan_joint, tilt_joint, optical_frame names in the URDF; its root link is the world frame.
-  /// @throws Error naming the file and the joint or link that is missing, not revolute, or without limits.
+  /// @param pan_joint, tilt_joint, optical_frame names in the URDF. The URDF's root link is the world frame.
+  /// @throws Error naming the file and the joint or link that is missing, is not revolute or has no limits.
   static CameraRig load(const std::string& urdf_file, const std::string& pan_joint, const std::string& tilt_joint,
                         const std::string& optical_frame);
 

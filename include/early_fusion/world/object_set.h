@@ -10,22 +10,22 @@
 
 namespace early_fusion::world {
 
-/// One type of item. The mesh stands upright on z = 0, the centre of its bounding box above the origin [m].
+/// One item. The mesh stands upright on z = 0, with the centre of its bounding box above the origin [m].
 struct Object {
   std::string name;
   TexturedMesh mesh;
   std::string mesh_file;
-  Eigen::Vector3d mesh_scale;   ///< the file's coordinates times mesh_scale, less mesh_origin, are those of `mesh`
-  Eigen::Vector3d mesh_origin;  ///< [m]
-  std::vector<Eigen::Vector3d> hull;  ///< corners of the convex hull that placement and the cone use [m]
+  Eigen::Vector3d mesh_scale;         ///< coordinates of `mesh` = coordinates in the file * mesh_scale - mesh_origin
+  Eigen::Vector3d mesh_origin;        ///< [m]
+  std::vector<Eigen::Vector3d> hull;  ///< corners of the convex hull for placement and the cone [m]
 };
 
-/// The items that can stand on the counter, in the order of their indices.
+/// The items that can stand on the counter, by index.
 class ObjectSet {
  public:
   ObjectSet() = default;
 
-  /// Objects made by a program. @throws Error when a name is empty or stands twice.
+  /// A set of given objects. @throws Error if a name is empty or is listed twice.
   explicit ObjectSet(std::vector<Object> objects) : objects_(std::move(objects)), vocabulary_(namesOf(objects_)) {}
 
   /// Reads `objects: [{name, mesh, scale}, ...]`; mesh paths are relative to the YAML file.

@@ -8,8 +8,8 @@ class btConvexHullShape;
 
 namespace early_fusion::world {
 
-/// A convex hull somewhere in the world. Distances are by Bullet's GJK, good to 0.02 mm or a thousandth, whichever is
-/// more. Immutable once made.
+/// A convex hull at a pose in the world. Bullet's GJK computes distances, to within 0.02 mm or 0.1 %, whichever is
+/// more. Immutable.
 class PlacedHull {
  public:
   /// @param corners in the object's frame [m]; at least one.
@@ -18,20 +18,20 @@ class PlacedHull {
   PlacedHull(PlacedHull&&) noexcept;
   PlacedHull& operator=(PlacedHull&&) noexcept;
 
-  /// In the world [m].
+  /// In the world frame [m].
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
-  /// A point inside the hull, in the world [m]: the mean of its corners.
+  /// The mean of the corners, which is inside the hull, in the world frame [m].
   const Eigen::Vector3d& center() const { return center_; }
-  /// Of the ball about center() that holds the hull [m].
+  /// The radius of the ball about center() that contains the hull [m].
   double radius() const { return radius_; }
   /// Parallel to the world's axes [m].
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 
-  /// Smallest distance [m] between two hulls; 0 where they meet.
+  /// The smallest distance [m] between two hulls; 0 if they meet.
   double distanceTo(const PlacedHull& other) const;
 
-  /// Smallest distance [m] from a point in the world; 0 inside.
-  /// @param nearest where not null and the distance is not 0: the hull's point at that distance [m], in the world.
+  /// The smallest distance [m] from a point in the world frame; 0 inside the hull.
+  /// @param nearest if not null, receives the hull's nearest point [m] unless the distance is 0.
   double distanceTo(const Eigen::Vector3d& point, Eigen::Vector3d* nearest = nullptr) const;
 
  private:

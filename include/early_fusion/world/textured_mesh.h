@@ -34,9 +34,9 @@ struct TexturedMesh {
   Eigen::AlignedBox3f bounds() const;
 };
 
-/// Loads any mesh that assimp reads, with its diffuse textures (or plain diffuse colours) and smooth normals where the
-/// file has none. A mesh over `max_triangles` is simplified to that many, with a note on stderr.
-/// @param scale applied to the file's coordinates, which become metres.
+/// Loads any mesh that assimp reads, with its diffuse textures or colours. Computes smooth normals if the file has
+/// none. A mesh with more than `max_triangles` is simplified to that number, with a note on stderr.
+/// @param scale converts the file's coordinates to metres.
 /// @throws Error naming `path` and what is missing or broken (no triangles, unreadable texture, not finite).
 TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles);
 

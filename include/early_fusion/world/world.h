@@ -20,8 +20,8 @@ struct WorldOptions {
   std::string pan_joint = "pan_joint";
   std::string tilt_joint = "tilt_joint";
   std::string optical_frame = "camera_optical_frame";
-  std::string counter_link = "counter";  ///< its collision box carries the objects
-  double placement_width = 1.1;          ///< [m] along y, centred on the counter: where objects' centres may lie
+  std::string counter_link = "counter";  ///< objects stand on its collision box
+  double placement_width = 1.1;          ///< [m] along y: the extent of the objects' centres, centred on the counter
   double placement_depth = 0.58;         ///< [m] along x, likewise
   double clearance = 0.005;              ///< [m] between two objects, and between an object and the kitchen
   double max_overhang = 0.03;            ///< [m] of an object over an edge of the counter's top
@@ -44,7 +44,7 @@ struct HorizontalRectangle {
   double min_x, max_x, min_y, max_y, z;
 };
 
-/// Everything that stays the same from episode to episode; immutable and shared between threads.
+/// Everything that is the same in all episodes. Immutable and shared between threads.
 struct World {
   WorldOptions options;
   ObjectSet objects;
@@ -56,8 +56,7 @@ struct World {
   HorizontalRectangle placement;  ///< on the counter's top: where the centres of objects may lie
 };
 
-/// @param world_file a WorldOptions file, to which the paths in it are relative; empty: the package's
-/// config/world.yaml.
+/// @param world_file a WorldOptions file; empty: the package's config/world.yaml. Paths in it are relative to it.
 /// @throws Error naming file, key and value.
 std::shared_ptr<const World> loadWorld(const std::string& world_file);
 

@@ -16,7 +16,7 @@ namespace early_fusion::nodes {
 
 namespace {
 
-// A camera sends many images for each that is asked about; those wait here for a request of their stamp.
+// A camera sends many images for each request. Images wait in this queue for a request with their stamp.
 constexpr int kImageQueue = 30;
 
 }  // namespace
@@ -24,9 +24,8 @@ constexpr int kImageQueue = 30;
 core::OptionSet PolicyNode::Options::options() {
   core::OptionSet set("policy");
   set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
-  set.addChoice("mode", acting.mode, model::actionChoiceNames(),
-                "with weights from a file: the likeliest action, or drawn");
-  set.add("seed", acting.seed, "of the draws in mode 'sample'");
+  set.addChoice("mode", acting.mode, model::actionChoiceNames(), "how weights from a file choose actions");
+  set.add("seed", acting.seed, "seed of drawn actions");
   set.addChoice("precision", acting.precision, model::precisionNames(),
                 "of the arithmetic with weights from a file; auto: bf16 where the processor has it natively");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");

@@ -70,7 +70,7 @@ PanTiltDriverNode::PanTiltDriverNode(const Options& options)
 }
 
 void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
-  if (target_) return;  // from here on the commands say where it is: rounding a moving joint would lose steps
+  if (target_) return;  // later positions follow from the commands: rounding a moving joint's position would lose steps
   const std::optional<int> pan = stepsOf(states, rig_.panJoint());
   const std::optional<int> tilt = stepsOf(states, rig_.tiltJoint());
   if (!pan || !tilt) return;

@@ -19,7 +19,8 @@ std::string shortestText(double value) {
   return std::string(buffer, result.ptr);
 }
 
-/// roslaunch guesses types ("1" becomes an int, "true" a bool); an option knows its own, so it gets the text back.
+/// roslaunch guesses types ("1" becomes an int, "true" a bool). An option parses text itself, so the value is converted
+/// back to text.
 std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeString:

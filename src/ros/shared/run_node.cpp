@@ -24,7 +24,7 @@ bool wantsHelp(int argc, char** argv) {
 
 void reportFailure(const std::string& reason) {
   ROS_FATAL("%s", reason.c_str());
-  // Of the session that the node is part of, in its namespace or one above; a node beside it must not end it.
+  // The session's parameter, in the node's namespace or one above. A node outside the session must not end it.
   std::string parameter;
   if (std::getenv(kSessionVariable) != nullptr && ::ros::isInitialized() &&
       ::ros::param::search(kFailureParameter, parameter)) {
@@ -43,7 +43,7 @@ int runNode(int argc, char** argv, const std::string& name, const core::OptionSe
   }
   try {
     ::ros::init(argc, argv, name);
-    ::ros::start();  // or else the console would end with the node's last handle, and with it the reason of a failure
+    ::ros::start();  // keeps the console alive after the node's last handle, so that the reason of a failure is logged
     run();
     return 0;
   } catch (const std::exception& error) {

@@ -179,7 +179,7 @@ bool SimulatorNode::onSetRequest(SetRequest::Request& request, SetRequest::Respo
     if (play_->episode.state().request.size() < wanted.size())
       response.message += "; the others are not on the counter";
     response.success = true;
-    // A step that is out already is asked anew: the answer to the old request no longer counts.
+    // A published step is published again with a new stamp, so an answer to the old request is dropped.
     if (!awaited_.isZero()) publishStep();
   } catch (const core::Error& error) {
     response.message = error.what();

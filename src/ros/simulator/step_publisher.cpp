@@ -11,7 +11,7 @@ namespace early_fusion::nodes {
 
 namespace {
 
-// In lockstep with the policy, but not with who only listens (the trainer, rosbag): room for a few episodes.
+// The policy is in lockstep; other subscribers (the trainer, rosbag) are not, so queues hold a few episodes.
 constexpr int kStepQueue = 512;
 constexpr int kEpisodeQueue = 64;
 
@@ -31,7 +31,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const worl
       marker_publisher_(node.advertise<visualization_msgs::MarkerArray>(kMarkersTopic, 1)) {}
 
 ::ros::Time StepPublisher::nextStamp() {
-  // Two steps within one tick of the clock (a paused simulated one) must still differ.
+  // Two steps must have different stamps, even if the clock (a paused simulated one) has not advanced.
   last_stamp_ = std::max(::ros::Time::now(), last_stamp_ + ::ros::Duration(0, 1));
   return last_stamp_;
 }
@@ -62,7 +62,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const worl
 }
 
 void StepPublisher::publishAgain() {
-  // The scene first: whoever labels the step has it by the time that the policy answers.
+  // The scene comes first, so that the trainer has it when the policy answers.
   scene_publisher_.publish(scene_);
   request_publisher_.publish(request_);
   camera_publisher_.publish(image_, camera_info_);

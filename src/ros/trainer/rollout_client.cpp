@@ -149,7 +149,7 @@ void RolloutClient::supervise() {
   const ::ros::WallDuration quiet = ::ros::WallTime::now() - last_news_;
   const bool stragglers_are_late = goal_done_ && quiet > ::ros::WallDuration(kStragglerSec);
   if (!stragglers_are_late && quiet < stall_) return;
-  if (recorder_->complete()) {  // all that is missing is the simulator's word that the goal has ended
+  if (recorder_->complete()) {  // only the simulator's report of the goal's end is missing
     goal_done_ = true;
     return finishWhenDone();
   }

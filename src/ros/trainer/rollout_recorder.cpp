@@ -77,7 +77,7 @@ const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& i
   if (recording_ && recording_->stamp == scene.header.stamp) return nullptr;
   try {
     if (scene.step == 0) begin(scene);
-    // The rest of an episode that was dropped.
+    // A later step of an episode that was dropped.
     if (!recording_ || recording_->key.number != scene.episode) return nullptr;
     check(image, request, scene, action);
     const core::Action taken = core::actionFromName(action.name);

@@ -13,30 +13,31 @@
 
 namespace early_fusion::nodes {
 
-/// How a policy acts: what goes with its weights.
+/// How a policy acts with its weights.
 struct Acting {
   std::string mode = "argmax";     ///< one of model::actionChoiceNames()
-  std::uint64_t seed = 0;          ///< of the draws in the modes that draw
+  std::uint64_t seed = 0;          ///< of drawn actions
   std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor has it natively
 };
 
-/// What was decided about one image.
+/// The decision on one image.
 struct Decision {
   core::Action action = core::Action::kIdle;
   std::vector<float> probabilities;  ///< of the seven actions
-  int frames = 0;                    ///< how many images it was decided from
+  int frames = 0;                    ///< the number of frames that it used
 };
 
-/// A policy that follows a stream of images: weights, the last few images, and the draws.
+/// A policy on a stream of images: it keeps the weights and the last frames.
 class ActingPolicy {
  public:
-  /// Takes weights and begins to act with them; the images seen so far stay when their size does.
-  /// @param source names the weights in errors. @throws core::Error as model::loadPolicy(); the old weights stay then.
+  /// Replaces the weights. The frames are kept if the new weights have the same frame size.
+  /// @param source names the weights in errors. @throws core::Error as model::loadPolicy(); the old weights are kept
+  /// then.
   void load(nn::WeightsFile file, const std::string& source, const Acting& acting);
 
   bool loaded() const { return policy_ != nullptr; }
 
-  // Only when loaded():
+  // Only if loaded():
   const model::GoalPolicy& policy() const { return *policy_; }
   const nn::WeightsFile& file() const { return file_; }
   const Acting& acting() const { return acting_; }
@@ -44,14 +45,14 @@ class ActingPolicy {
   /// Field of view of the frames that it was trained on [degrees].
   double horizontalFovDeg() const { return policy_->options().horizontal_fov_deg; }
 
-  /// Decides about the next image of an episode. The images before it count when they belong to the same episode and
-  /// its steps follow each other; the same step again replaces its image.
+  /// Decides on the next frame of an episode. Earlier frames are used if they belong to the same episode and the steps
+  /// are consecutive. A repeated step replaces its frame.
   /// @param frame (imageSize(), imageSize()). @param items what is requested.
   /// @throws core::Error naming an item that the weights don't know, and the known ones.
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);
 
-  /// The image decided about last, tinted where the decision hangs on it; see model::occlusionSaliency().
+  /// The last frame, tinted by model::occlusionSaliency().
   core::Image lastImageWithSaliency(int grid);
 
  private:

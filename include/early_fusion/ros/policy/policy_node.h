@@ -20,13 +20,13 @@
 
 namespace early_fusion::nodes {
 
-/// Answers every image that has a request of the same stamp with an action. Knows nothing of the simulator: any
-/// camera's images will do.
+/// Answers every image that has a request with the same stamp with an action. It knows nothing of the simulator, so any
+/// camera can replace it.
 class PolicyNode {
  public:
   struct Options {
     std::string weights;  ///< a weights file; empty: wait for the topic or the service
-    Acting acting;        ///< with weights from a file
+    Acting acting;        ///< how weights from a file act
     std::string image_transport = "raw";
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
@@ -58,8 +58,8 @@ class PolicyNode {
   Health health_;
   ActingPolicy policy_;
   std::string weights_id_;
-  Action answer_;              // to the image before
-  bool answer_valid_ = false;  // with the weights of now
+  Action answer_;              // to the previous image
+  bool answer_valid_ = false;  // whether answer_ was decided by the current weights
   sensor_msgs::CameraInfoConstPtr camera_info_;
   ::ros::WallTime annotated_;
   double latency_sec_ = 0;  // of the last decision

@@ -15,10 +15,9 @@
 
 namespace early_fusion::nodes {
 
-/// Turns the policy's actions into position commands for a real pan-tilt unit: 2 degrees a move, within the URDF's
-/// joint limits, from where the joint states say that it is. An action that answers an older image than the latest
-/// request is dropped: the policy is deciding on what the camera sees now. One without a stamp, as typed by hand, is
-/// carried out.
+/// Turns the policy's moves into position commands for a real pan-tilt unit: 2 degrees each, within the URDF's joint
+/// limits, starting from the joint states. Drops an action that answers an older image than the latest request, because
+/// the policy is deciding on a newer one. Carries out an action without a stamp, such as one that was typed by hand.
 class PanTiltDriverNode {
  public:
   struct Options {
@@ -44,7 +43,7 @@ class PanTiltDriverNode {
   ::ros::NodeHandle node_;
   world::CameraRig rig_;
   Health health_;
-  std::optional<world::Orientation> target_;  // nothing is commanded before the joints are known
+  std::optional<world::Orientation> target_;  // empty until the joint positions are known
   ::ros::Time latest_request_;                // the stamp of its image
   ::ros::Publisher pan_publisher_;
   ::ros::Publisher tilt_publisher_;

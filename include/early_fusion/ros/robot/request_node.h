@@ -14,10 +14,10 @@
 
 namespace early_fusion::nodes {
 
-/// Asks the policy about a real camera's images: gives an image the request that stands, waits for the action, and asks
-/// about the next image once the camera has had time to move.
+/// Takes the simulator's place before a real camera: publishes the current request with an image's stamp, waits for the
+/// action, and takes the next image once the camera has had time to move.
 ///
-/// So the policy sees what it saw in the simulator: one image for each of its actions.
+/// So the policy sees one image for each of its actions, as in the simulator.
 class RequestNode {
  public:
   struct Options {

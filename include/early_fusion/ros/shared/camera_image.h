@@ -7,14 +7,14 @@
 
 namespace early_fusion::nodes {
 
-/// Edge of the centred square of a camera's image that covers a field of view [px], at most the image's shorter edge.
+/// The edge [px] of the centred square of an image that covers a field of view; at most the image's shorter edge.
 ///
-/// @param info its focal length decides; where it has none (an uncalibrated camera), the shorter edge.
+/// @param info has the focal length. Without one (an uncalibrated camera) the result is the shorter edge.
 int cropEdge(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* info, double horizontal_fov_deg);
 
-/// The picture a policy sees of a camera's image: its centred square of `crop_edge` pixels, averaged down (or, where it
-/// is smaller, interpolated up) to `size`. An rgb8 image of just that size comes through bit for bit.
-/// @throws core::Error naming encoding and size when the image cannot be converted to rgb8.
+/// The frame that a policy sees of a camera's image: its centred square of `crop_edge` pixels, scaled to `size`
+/// (averaged if it is larger, interpolated if it is smaller). An rgb8 image of that size is unchanged, bit for bit.
+/// @throws core::Error naming the encoding and the size if the image cannot be converted to rgb8.
 core::Image policyImage(const sensor_msgs::ImageConstPtr& image, int crop_edge, int size);
 
 }  // namespace early_fusion::nodes

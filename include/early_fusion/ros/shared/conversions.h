@@ -20,7 +20,7 @@ namespace early_fusion::nodes {
 /// The first of a goal's episodes. @throws core::Error as sim::loadTask() and sim::withUpTo().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
-/// rgb8, rows without padding. Takes the pixels.
+/// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
 
 /// The intrinsics of the rasterizer: no distortion, fx = fy, pixel centres at whole numbers (REP-104).
@@ -32,14 +32,14 @@ sensor_msgs::JointState jointStateMessage(const world::CameraRig& rig, world::Or
 Request requestMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                        const std_msgs::Header& header);
 
-/// @param previous_action the name of the action that led here; empty at step 0.
+/// @param previous_action the name of the action that led to this state; empty at step 0.
 Scene sceneMessage(const sim::Episode& episode, const sim::EpisodeKey& key, const core::Vocabulary& vocabulary,
                    const std::string& previous_action, const std_msgs::Header& header);
 
 EpisodeResult episodeResultMessage(const sim::Episode& episode, const sim::EpisodeKey& key,
                                    const std_msgs::Header& header);
 
-/// What a Scene message says, in the simulation's own terms.
+/// The content of a Scene message as types of the simulation.
 struct SceneState {
   std::vector<sim::Instance> instances;
   sim::EpisodeState state;

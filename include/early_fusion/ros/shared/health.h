@@ -13,22 +13,22 @@
 
 namespace early_fusion::nodes {
 
-/// What a node tells /diagnostics (REP-107): how often things happen, what it dropped, and what it adds itself.
+/// A node's report on /diagnostics (REP-107): counts and rates of events, dropped messages, and the node's own values.
 ///
-/// Level WARN while messages were dropped since the last report. One thread: the node's callbacks.
+/// The level is WARN if messages were dropped since the last report. For use from the node's callbacks, in one thread.
 class Health {
  public:
-  /// Adds values of the moment, such as the weights in use, to a report.
+  /// Adds the node's own values, such as the current weights, to a report.
   using Reporter = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
 
   explicit Health(Reporter reporter = {});
 
-  /// One more of `event` ("images"): reported as a total and a rate.
+  /// Counts one event of a kind ("images"). Reported as a total and a rate.
   void count(const std::string& event);
 
-  /// A message that cannot be used. Counted, and logged as a warning at most once in 5 s for each kind.
-  /// @param kind a few words, the same for all messages of its kind: "stale action".
-  /// @param detail names the offending value, and what to do about it.
+  /// Counts a message that cannot be used, and logs a warning, at most once in 5 s for each kind.
+  /// @param kind a few words that are the same for all messages of the kind: "stale action".
+  /// @param detail names the offending value and says what to do.
   void drop(const std::string& kind, const std::string& detail);
 
  private:
@@ -48,7 +48,7 @@ class Health {
   ::ros::WallTimer timer_;
 };
 
-/// The parameter that diagnostic_updater reads by itself, declared so that it is known and in range.
+/// Declares the parameter that diagnostic_updater reads, so that it is a known option with a range.
 void addDiagnosticPeriod(core::OptionSet& options, double& period_sec);
 
 }  // namespace early_fusion::nodes

@@ -6,8 +6,8 @@
 
 namespace early_fusion::nodes {
 
-/// The node's private ROS parameters ("~image_size") as (name, text), but for groups that are none of `options`: image
-/// transports keep parameters of their own there. Needs ros::init() and a master.
+/// The node's private ROS parameters ("~image_size") as (name, text). Groups of parameters that are not in `options`
+/// are left out, because image transports keep their own parameters there. Needs ros::init() and a master.
 /// @throws core::Error naming a parameter that is a list, or an option that is a group.
 core::GivenOptions privateParameters(const core::OptionSet& options);
 
@@ -15,7 +15,7 @@ core::GivenOptions privateParameters(const core::OptionSet& options);
 /// @throws core::Error naming the parameter, its value and the allowed range; for an unknown one, the known ones.
 void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters);
 
-/// A table for --help: parameter, unit, range, default and help, one option a paragraph.
+/// The text of --help: parameter, unit, range, default and help of each option.
 std::string describeParameters(const core::OptionSet& options);
 
 }  // namespace early_fusion::nodes

@@ -18,7 +18,7 @@ namespace early_fusion::nodes {
 int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
             const std::function<void()>& run);
 
-/// main() of a node class that has a nested Options struct and a constructor from it.
+/// The main() of a node class with a nested Options struct and a constructor that takes it.
 template <class Node>
 int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& spin) {
   typename Node::Options options;

@@ -1,9 +1,9 @@
 #pragma once
 
-/// The names by which the nodes meet: relative, so that a namespace or a remapping moves them.
+/// The names of topics, services and actions. They are relative, so that namespaces and remappings apply.
 ///
-/// The nodes live in early_fusion::nodes, not early_fusion::ros: generated message headers say `ros::` inside namespace
-/// early_fusion and mean roscpp's.
+/// The namespace is early_fusion::nodes and not early_fusion::ros, because generated message headers use `ros::` inside
+/// namespace early_fusion for roscpp's.
 namespace early_fusion::nodes {
 
 // Of the simulator, or of a real camera. One stamp a step.
@@ -30,12 +30,12 @@ inline constexpr char kWeightsTopic[] = "weights";  ///< latched
 inline constexpr char kExpertTopic[] = "expert";
 inline constexpr char kProgressTopic[] = "progress";  ///< latched
 
-/// A parameter that a launch file sets to "" and a node that cannot go on sets to the reason; see runNode().
+/// A launch file sets this parameter to "". A node that cannot go on sets it to the reason; see runNode().
 inline constexpr char kFailureParameter[] = "session_failure";
 inline constexpr char kSessionVariable[] = "EARLY_FUSION_SESSION";  // in the environment of a session's nodes
 
-/// A parameter that a launch file sets to false and the trainer to true once its session has begun: a trainer that is
-/// respawned goes on with that session instead of refusing the run folder of another.
+/// A launch file sets this parameter to false, the trainer sets it to true once its session has begun. A respawned
+/// trainer then resumes that session instead of refusing its run folder.
 inline constexpr char kStartedParameter[] = "session_started";
 
 }  // namespace early_fusion::nodes

@@ -9,13 +9,13 @@
 
 namespace early_fusion::nodes {
 
-/// What rviz shows of the objects on the counter: a textured mesh each, and the names of the requested ones above them.
+/// The objects on the counter for rviz: textured meshes, with the names of the requested objects above them.
 ///
-/// Begins with a DELETEALL, so that one message replaces the last. @param header the world frame's.
+/// The first marker is a DELETEALL, so each message replaces the last one. @param header in the world frame.
 visualization_msgs::MarkerArray objectMarkers(const world::World& world, const sim::Episode& episode,
                                               const std_msgs::Header& header);
 
-/// The URL by which another process finds a mesh: package://early_fusion/... inside the package, else file://...
+/// The URL of a mesh for other processes: package://early_fusion/... inside the package, else file://...
 std::string meshUrl(const std::string& mesh_file);
 
 }  // namespace early_fusion::nodes

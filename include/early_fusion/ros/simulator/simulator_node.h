@@ -40,7 +40,7 @@ class SimulatorNode {
   explicit SimulatorNode(const Options& options);
 
  private:
-  /// Who asked for the episode that is played.
+  /// Who started the current episode.
   enum class Driver { kNobody, kGoal, kHand, kFreeRun };
 
   struct Play {
@@ -62,7 +62,7 @@ class SimulatorNode {
   bool onSetRequest(SetRequest::Request& request, SetRequest::Response& response);
   void onIdleTimer();
 
-  /// @throws core::Error when the scene cannot be laid out.
+  /// @throws core::Error if the objects do not fit on the counter.
   void begin(Driver driver, const sim::EpisodeKey& key);
   void freeRun();
   void publishWhenDue();
@@ -82,7 +82,7 @@ class SimulatorNode {
   Driver driver_ = Driver::kNobody;
   std::optional<Play> play_;
   GoalProgress goal_;
-  ::ros::Time awaited_;  // the stamp that the next action must carry; zero: none is awaited
+  ::ros::Time awaited_;  // the stamp that the next action must have; zero: no action is expected
   ::ros::WallTime published_;
 
   ::ros::Subscriber action_subscriber_;

@@ -13,23 +13,23 @@
 
 namespace early_fusion::nodes {
 
-/// Draws a step of an episode and publishes it as a robot would: image, camera_info, request, scene and joint states
-/// with one stamp; the objects as markers for whoever looks.
+/// Draws a step of an episode and publishes it: image, camera_info, request, scene and joint states with one stamp, and
+/// the objects as markers if there is a subscriber.
 class StepPublisher {
  public:
-  /// @param marker_rate_hz how often at most the markers are published.
+  /// @param marker_rate_hz maximum number of marker messages a second.
   StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const world::World> world, double marker_rate_hz);
 
   /// @param previous_action the name of the action that led to this state; empty at step 0.
-  /// @return the stamp, later than every one before it.
+  /// @return the stamp, which is later than all stamps before.
   ::ros::Time publish(const sim::Episode& episode, const sim::EpisodeKey& key, const std::string& previous_action);
 
-  /// The step published last once more, with its stamp, for a policy that has missed it.
+  /// Publishes the last step again with the same stamp, for a policy that has missed it.
   void publishAgain();
 
   void publishResult(const sim::Episode& episode, const sim::EpisodeKey& key);
 
-  /// The joint states as they stand, with the time of now: tf goes on while nothing is played.
+  /// Publishes the current joint states with the current time, so that tf stays valid while no episode is played.
   void publishJointStates();
 
  private:

@@ -11,8 +11,8 @@
 
 namespace early_fusion::nodes {
 
-/// Scores whatever policy is running on episodes of a task, and ends: the same episodes and scores as the command
-/// line's `evaluate`.
+/// Scores the running policy on episodes of a task, and ends. The episodes and scores are those of the command line's
+/// `evaluate`.
 class EvaluatorNode {
  public:
   struct Options {
@@ -27,7 +27,7 @@ class EvaluatorNode {
     core::OptionSet options();
   };
 
-  /// Shuts ROS down when the last episode has been scored.
+  /// Shuts ROS down after the last episode has been scored.
   explicit EvaluatorNode(const Options& options);
 
  private:

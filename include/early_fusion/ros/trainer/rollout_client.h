@@ -19,29 +19,29 @@
 
 namespace early_fusion::nodes {
 
-/// Has episodes played by the simulator and the policy, and hands back labelled trajectories; publishes the expert's
-/// opinion of every step on the way.
+/// Has the simulator and the policy play episodes, and returns labelled trajectories. Publishes the expert's label of
+/// every step.
 ///
-/// Both nodes may die and come back: what was missed is asked for again. Event-driven, in the thread that spins.
+/// Both nodes may die and restart: missed episodes are requested again. Runs in the callbacks of the thread that spins.
 class RolloutClient {
  public:
-  /// @param stall_sec after so long without a step of an episode asked for, it is asked for again.
+  /// @param stall_sec time without a step of a requested episode after which it is requested again.
   /// `world` and `health` must outlive the client.
   RolloutClient(::ros::NodeHandle& node, const world::World& world, double stall_sec, Health& health);
 
-  /// Begins a plan as soon as a policy acts with its weights; a plan at hand is given up.
+  /// Begins a plan as soon as a policy acts with the plan's weights. A current plan is cancelled.
   /// @param on_trajectory called with each trajectory, in order.
-  /// @param on_done called after the last one, when the simulator has ended the goal; may start the next plan.
+  /// @param on_done called after the last one, once the simulator has ended the goal. May start the next plan.
   void start(const RolloutPlan& plan, std::function<void(learning::Trajectory)> on_trajectory,
              std::function<void()> on_done);
 
   /// The policy node's latest status; nullptr before the first.
   const PolicyStatus* policyStatus() const { return policy_status_.get(); }
 
-  /// Whether a plan is at hand.
+  /// Whether there is a current plan.
   bool busy() const { return phase_ != Phase::kIdle; }
 
-  /// What is being waited for, for people: "the simulator that publishes scene", "episodes 3 to 49".
+  /// A text that says what the client waits for: "the simulator that publishes scene", "episodes 3 to 49".
   std::string waitsFor() const;
 
  private:
@@ -54,7 +54,7 @@ class RolloutClient {
   void supervise();
   void askWhenReady();
   void finishWhenDone();
-  /// Empty when nothing keeps the plan from being played.
+  /// What prevents the plan from being played; empty if nothing does.
   std::string obstacle() const;
 
   using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request, Scene, Action>;
@@ -69,7 +69,7 @@ class RolloutClient {
   std::function<void(learning::Trajectory)> on_trajectory_;
   std::function<void()> on_done_;
   bool goal_done_ = false;
-  ::ros::WallTime last_news_;  // of the plan: begun, sent as a goal, a step, done
+  ::ros::WallTime last_news_;  // the last event of the plan: its begin, a goal, a step, its end
 
   PolicyStatusConstPtr policy_status_;
   ::ros::Subscriber policy_status_subscriber_;

@@ -25,32 +25,32 @@ struct RolloutPlan {
   learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
 };
 
-/// Makes labelled trajectories of the messages of episodes that are played elsewhere.
+/// Makes labelled trajectories of the messages of episodes that other nodes play.
 ///
-/// An episode counts only when every step of it was seen and follows from the one before by the rules, and when the
-/// policy that acted had the right weights and had seen the episode from its beginning. So a node that died in between
-/// cannot change what is learnt: its episode is dropped and stays missing().
+/// An episode is accepted only if every step arrived, if each step follows from the one before by the rules, and if the
+/// right weights acted and had seen the episode from its beginning. So a node that died within an episode cannot change
+/// what is learnt: the episode is dropped and stays missing().
 class RolloutRecorder {
  public:
   /// `world` must outlive the recorder. @throws core::Error as firstEpisode().
   RolloutRecorder(const world::World& world, const RolloutPlan& plan);
 
-  /// Takes the four messages of one stamp.
-  /// @return the labelled step, valid until the next call of any function; nullptr when it is not of the plan or is
-  /// known already.
-  /// @throws core::Error saying why the step cannot be used; the episode at hand is dropped then.
+  /// Adds the four messages of one stamp.
+  /// @return the labelled step, valid until the next call of any function; nullptr if the step is not part of the plan
+  /// or was added before.
+  /// @throws core::Error saying why the step cannot be used. The current episode is dropped then.
   const learning::TrajectoryStep* add(const sensor_msgs::Image& image, const Request& request, const Scene& scene,
                                       const Action& action);
 
-  /// The next trajectory in the plan's order, once it is there.
+  /// The next trajectory in the plan's order, if it is complete.
   std::optional<learning::Trajectory> next();
 
   bool complete() const { return next_ == end(); }
 
-  /// Whether a step is of an episode of the plan that is not recorded yet.
+  /// Whether a step belongs to an episode of the plan that is not recorded yet.
   bool wants(const Scene& scene) const;
 
-  /// A run of episodes that are not recorded, as [first, last).
+  /// A range of consecutive episodes that are not recorded, [first, last).
   std::pair<std::uint64_t, std::uint64_t> missing() const;
 
  private:

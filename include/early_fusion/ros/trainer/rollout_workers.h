@@ -14,29 +14,29 @@
 
 namespace early_fusion::nodes {
 
-/// Pairs of a simulator and a policy that share the episodes of a plan. A pair works in lockstep and so keeps one core
-/// busy; two fill two cores.
+/// Workers, which are pairs of a simulator and a policy, that share the episodes of a plan. A worker runs in lockstep
+/// and keeps one core busy.
 ///
-/// The first pair's topics are in the node's own namespace, the others' in worker_2, worker_3, ... below it. The
+/// The first worker's topics are in the node's namespace, those of the others in worker_2, worker_3, ... below it. The
 /// trajectories are the same for any number of workers.
 class RolloutWorkers {
  public:
   /// @param count of workers, at least 1. `world` and `health` must outlive the object.
   RolloutWorkers(int count, const world::World& world, double stall_sec, Health& health);
 
-  /// Gives every worker's policy its weights (latched).
+  /// Publishes the weights to every worker (latched).
   void publish(const Weights& weights);
 
-  /// Begins a plan, as RolloutClient::start(), but not while one is at hand.
+  /// Begins a plan, as RolloutClient::start(). Must not be called while there is a current plan.
   /// @param on_trajectory called with each trajectory, in order.
   /// @param on_done called after the last one; may start the next plan.
   void start(const RolloutPlan& plan, std::function<void(learning::Trajectory)> on_trajectory,
              std::function<void()> on_done);
 
-  /// The share of the plan's episodes that are played. [0, 1]
+  /// The share of the plan's episodes that have been played. [0, 1]
   double done() const;
 
-  /// What is being waited for, for people.
+  /// A text that says what the workers wait for.
   std::string waitsFor() const;
 
  private:
@@ -54,9 +54,9 @@ class RolloutWorkers {
   RolloutPlan plan_;
   std::function<void(learning::Trajectory)> on_trajectory_;
   std::function<void()> on_done_;
-  std::map<std::uint64_t, learning::Trajectory> early_;  // by episode: those before it are still being played
-  std::uint64_t next_ = 0;                               // the episode to hand over next
-  int playing_ = 0;                                      // workers
+  std::map<std::uint64_t, learning::Trajectory> early_;  // by episode: finished before an earlier episode
+  std::uint64_t next_ = 0;                               // the next episode to pass to on_trajectory_
+  int playing_ = 0;                                      // the number of workers that are still playing
 };
 
 }  // namespace early_fusion::nodes

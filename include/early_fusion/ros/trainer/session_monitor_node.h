@@ -8,10 +8,10 @@
 
 namespace early_fusion::nodes {
 
-/// Ends a launch: exits when the trainer says that its session is finished, or when a node has failed for good.
+/// Ends a launch: exits when the trainer reports that its session is finished, or when a node cannot go on.
 ///
-/// roslaunch cannot both respawn a node that crashes and end when it is done. So the nodes of a session are respawned,
-/// and this one is `required`: when it exits, roslaunch ends the others.
+/// roslaunch cannot both respawn a node that crashes and end when the session is done. So the session's nodes are
+/// respawned, and this node is `required`: roslaunch ends the others when it exits.
 class SessionMonitorNode {
  public:
   struct Options {
@@ -24,7 +24,7 @@ class SessionMonitorNode {
 
  private:
   void onProgress(const Progress& progress);
-  /// @throws core::Error with the reason that a failed node left in the parameter `session_failure`.
+  /// @throws core::Error with the reason that a failed node wrote to the parameter `session_failure`.
   void checkFailure() const;
 
   ::ros::NodeHandle node_;

@@ -13,11 +13,11 @@
 
 namespace early_fusion::nodes {
 
-/// Oracle and trainer: has episodes played, labels them with the expert, trains on them in rounds, publishes the
-/// weights, and in the end scores them on held-out episodes.
+/// The trainer: has episodes played, labels them with the experts, trains in rounds, publishes the weights, and scores
+/// them on held-out episodes at the end.
 ///
-/// What it learns is what the command line's `train` learns with the same options, bit for bit. It goes on from its
-/// checkpoint when it is respawned. Training runs in a thread of its own; everything else in the one that spins.
+/// It gives the same weights as the command line's `train` with the same options, bit for bit. It continues from its
+/// checkpoint when it is respawned. Training runs in its own thread, everything else in the thread that spins.
 class TrainerNode {
  public:
   struct Options {
@@ -33,7 +33,7 @@ class TrainerNode {
   /// @param session to bring to its end; started with options.session, see startSession().
   TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session);
 
-  /// Gives up the round that is being trained: its trajectories are rolled out again by whoever resumes the session.
+  /// Cancels the current round. A resumed session rolls out its trajectories again.
   ~TrainerNode();
 
  private:
@@ -45,11 +45,11 @@ class TrainerNode {
   void finish();
 
   void publishWeights(const std::string& mode, std::uint64_t seed);
-  /// Publishes the weights as they stand and has the plan's episodes played with them.
+  /// Publishes the current weights and has the plan's episodes played with them.
   /// @param plan without task, weights and training expert, which are the session's.
   void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
-  /// [0, 1]
+  /// The finished share of the current stage. [0, 1]
   double stageDone() const;
   void publishProgress();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -63,7 +63,7 @@ class TrainerNode {
   ::ros::WallTimer round_timer_;
 
   std::string stage_;
-  learning::Progress progress_;  // of the session when it was last at rest: a round's thread writes to the session
+  learning::Progress progress_;  // a copy from before the current round, whose thread writes to the session
   ::ros::WallTime progress_taken_;
   std::string weights_id_;
   std::atomic<double> round_done_{0};  // [0, 1] of the round that is being trained
