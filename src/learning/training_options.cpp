@@ -32,7 +32,7 @@ void addLabelling(TrainingOptions& options, core::OptionSet& set) {
           "that a frame is labelled and learnt for: the policy's own, and others that could have been made there");
   set.add("skip_repeats", options.skip_repeats,
           "leave out steps that showed the policy the same as the step before and in which its action was optimal");
-  set.add("vain_collects", options.vain_collects,
+  set.add("failed_collects", options.failed_collects,
           "learn also what to do after a COLLECT one move too early has failed and nothing has changed");
   set.add("soft_labels", options.soft_labels, 0, 1, "",
           "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");

@@ -92,7 +92,7 @@ std::vector<model::Sample> samplesOf(const Trajectory& trajectory, std::size_t s
     samples.push_back(sampleOf(at.labelled_requests[i], frames, at.nearest_item, options, weights));
   }
   const bool collect_would_fail = at.nearest_item < 0 && frameChanged(frames);
-  if (!options.vain_collects || !collect_would_fail) return samples;
+  if (!options.failed_collects || !collect_would_fail) return samples;
   const core::FrameStack after_failing = afterFailedCollects(frames, step % 2 == 0 ? 1 : 2);
   for (std::size_t i = 0; i < requests; ++i) {
     const LabelledRequest& labelled = at.labelled_requests[i];

@@ -80,7 +80,7 @@ TEST(Trainer, TheLossOfARoundOfOneBatchIsThatOfItsTrajectoriesSamples) {
   TrainingOptions options = tinyTraining();
   options.epochs = 1;
   options.batch_size = options.trajectories_per_round * kTinySteps;
-  options.skip_repeats = options.vain_collects = true;
+  options.skip_repeats = options.failed_collects = true;
   options.soft_labels = 0.5;
   options.unlikelihood = 2;
   options.balance = 0.5;

@@ -111,7 +111,7 @@ TEST(SamplesOf, UnlikelihoodIsOfTheActionsThatWouldDoHarm) {
 class FailedCollectsTest : public testing::Test {
  protected:
   FailedCollectsTest() {
-    options_.vain_collects = true;
+    options_.failed_collects = true;
     options_.requests_per_frame = 3;
     options_.unlikelihood = 2;
   }
@@ -149,7 +149,7 @@ TEST_F(FailedCollectsTest, AreLeftOutWhereACollectWouldNotFailOrHasFailedAlready
   options_.requests_per_frame = 1;
   EXPECT_EQ(samplesOf(trajectory_, 2, options_, kEqual).size(), 1u) << "the request is not trained on";
   options_.requests_per_frame = 3;
-  options_.vain_collects = false;
+  options_.failed_collects = false;
   EXPECT_EQ(samplesOf(trajectory_, 2, options_, kEqual).size(), 3u);
 }
 

@@ -21,7 +21,7 @@ struct TrainingOptions {
   std::string teacher = "greedy";  ///< who labels: one of trainingExpertNames()
   int requests_per_frame = 1;      ///< labelled requests of a frame that are trained on, the policy's own first
   bool skip_repeats = false;       ///< leave out repeats (TrajectoryStep::repeats) in which the policy was right
-  bool vain_collects = false;      ///< add what the policy sees after a failed COLLECT one move too early
+  bool failed_collects = false;    ///< add what the policy sees after a failed COLLECT one move too early
   double soft_labels = 0;          ///< share of a target that goes to all optimal actions alike, not to the label
   double unlikelihood = 0;         ///< weight of the unlikelihood loss of actions that would do harm
   double balance = 0;              ///< weight of a sample: (the label's frequency in the window)^-balance

@@ -31,7 +31,7 @@ bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options);
 /// - Unlikelihood: options.unlikelihood for each action that would do harm. These are COLLECT where the nearest object
 ///   in the cone is not requested, REMOVE where it is, and both where nothing is in the cone and the frame is the same
 ///   as the one before: there a COLLECT has just failed.
-/// - With options.vain_collects, failed collects follow: where nothing is in the cone, the last action changed the
+/// - With options.failed_collects, failed collects follow: where nothing is in the cone, the last action changed the
 ///   frame, and one move and a COLLECT would do, the request's sample again as if the policy had tried COLLECT first.
 ///   It sees the newest frame twice at even steps and, as after a second try, three times at odd ones.
 ///
