@@ -25,7 +25,7 @@ void addRounds(TrainingOptions& options, core::OptionSet& set) {
 }
 
 void addLabelling(TrainingOptions& options, core::OptionSet& set) {
-  set.addChoice("teacher", options.teacher, trainingExpertNames(),
+  set.addChoice("training_expert", options.training_expert, trainingExpertNames(),
                 "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
                 "not in view");
   set.add("requests_per_frame", options.requests_per_frame, 1, kMaxRequestsPerFrame, "",

@@ -13,7 +13,7 @@ const std::vector<std::string>& trainingExpertNames() {
 }
 
 TrainingExpert trainingExpertFromName(const std::string& name) {
-  return static_cast<TrainingExpert>(core::indexOf(name, trainingExpertNames(), "teacher"));
+  return static_cast<TrainingExpert>(core::indexOf(name, trainingExpertNames(), "training_expert"));
 }
 
 core::FrameStack Trajectory::frameStack(std::size_t step) const {

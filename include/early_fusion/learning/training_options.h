@@ -18,13 +18,13 @@ struct TrainingOptions {
   std::string exploration = "sample";  ///< how rollouts choose: one of model::actionChoiceNames()
 
   // What a step of a trajectory teaches: training_samples.h.
-  std::string teacher = "greedy";  ///< who labels: one of trainingExpertNames()
-  int requests_per_frame = 1;      ///< labelled requests of a frame that are trained on, the policy's own first
-  bool skip_repeats = false;       ///< leave out repeats (TrajectoryStep::repeats) in which the policy was right
-  bool failed_collects = false;    ///< add what the policy sees after a failed COLLECT one move too early
-  double soft_labels = 0;          ///< share of a target that goes to all optimal actions alike, not to the label
-  double unlikelihood = 0;         ///< weight of the unlikelihood loss of actions that would do harm
-  double balance = 0;              ///< weight of a sample: (the label's frequency in the window)^-balance
+  std::string training_expert = "greedy";  ///< who labels: one of trainingExpertNames()
+  int requests_per_frame = 1;              ///< labelled requests of a frame that are trained on, the policy's own first
+  bool skip_repeats = false;     ///< leave out repeats (TrajectoryStep::repeats) in which the policy was right
+  bool failed_collects = false;  ///< add what the policy sees after a failed COLLECT one move too early
+  double soft_labels = 0;        ///< share of a target that goes to all optimal actions alike, not to the label
+  double unlikelihood = 0;       ///< weight of the unlikelihood loss of actions that would do harm
+  double balance = 0;            ///< weight of a sample: (the label's frequency in the window)^-balance
 
   // The optimizer.
   double learning_rate = 1e-4;        ///< of Adam, at the session's start
