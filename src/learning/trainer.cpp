@@ -34,7 +34,7 @@ Trainer::Trainer(const model::PolicyOptions& policy, const TrainingOptions& trai
     : options_(training),
       seed_(seed),
       learner_(model::makePolicy(policy, vocabulary, seed)),
-      averaged_(training.averaging > 0 ? model::makePolicy(policy, vocabulary, seed) : nullptr),
+      ema_(training.weight_ema > 0 ? model::makePolicy(policy, vocabulary, seed) : nullptr),
       adam_(learner_->parameters().values().size(), adamOptions(training)) {}
 
 void Trainer::add(Trajectory trajectory) {
@@ -105,7 +105,7 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
     ++steps;
     if (progress) progress(static_cast<double>(last) / frames.size());
   }
-  if (averaged_) averaged_->parametersChanged();
+  if (ema_) ema_->parametersChanged();
   statistics.loss /= std::max<std::uint64_t>(steps, 1);
   ++rounds_;
   new_trajectories_ = 0;
@@ -121,16 +121,16 @@ double Trainer::trainStep(const std::vector<model::Sample>& batch, std::uint64_t
   const double loss = learner_->lossAndGradients(batch, dropout_seed);
   adam_.step(learner_->parameters().values(), learner_->parameters().gradients(), learningRate());
   learner_->parametersChanged();
-  if (averaged_) updateAverage();
+  if (ema_) updateAverage();
   return loss;
 }
 
-/// The decay grows with the number n of training steps, n / (n + 10), up to options_.averaging: so the average soon
+/// The decay grows with the number n of training steps, n / (n + 10), up to options_.weight_ema: so the average soon
 /// forgets the untrained weights.
 void Trainer::updateAverage() {
   const auto steps = static_cast<double>(adam_.stepCount());
-  const auto rest = static_cast<float>(1 - std::min(options_.averaging, steps / (steps + 10)));
-  nn::Parameters& mean = averaged_->parameters();
+  const auto rest = static_cast<float>(1 - std::min(options_.weight_ema, steps / (steps + 10)));
+  nn::Parameters& mean = ema_->parameters();
   const nn::Parameters& last = learner_->parameters();
   mean.values() += rest * (last.values() - mean.values());
   mean.buffers() += rest * (last.buffers() - mean.buffers());
@@ -146,7 +146,7 @@ void Trainer::checkFinite(const RoundStatistics& statistics) const {
 
 nn::WeightsFile Trainer::save() const {
   nn::WeightsFile file = model::savePolicy(policy(), {});
-  if (averaged_) {
+  if (ema_) {
     file.tensors[kLearnerParameters] = storeFloats(learner_->parameters().values());
     file.tensors[kLearnerBuffers] = storeFloats(learner_->parameters().buffers());
   }
@@ -174,7 +174,7 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
 }
 
 void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& source) {
-  std::unique_ptr<model::TrainablePolicy>& acting = averaged_ ? averaged_ : learner_;
+  std::unique_ptr<model::TrainablePolicy>& acting = ema_ ? ema_ : learner_;
   std::unique_ptr<model::TrainablePolicy> loaded = model::loadPolicy(file, source, acting->options().precision);
   const Eigen::Index size = acting->parameters().values().size();
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
@@ -183,7 +183,7 @@ void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& sour
                       "; resume with the session's objects and policy options, or start a new session");
   }
   acting = std::move(loaded);
-  if (!averaged_) return;
+  if (!ema_) return;
   nn::Parameters& last = learner_->parameters();
   last.values() = loadFloats(file, kLearnerParameters, size, source);
   last.buffers() = loadFloats(file, kLearnerBuffers, last.buffers().size(), source);

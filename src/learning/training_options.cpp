@@ -49,7 +49,7 @@ void addOptimizer(TrainingOptions& options, core::OptionSet& set) {
   set.add("renormalise_from", options.renormalise_from, 0, 100000000, "steps",
           "of training before batch norm normalises with its running statistics, as in acting, instead of each "
           "batch's; 0: it never does");
-  set.add("averaging", options.averaging, 0, 0.999999, "",
+  set.add("weight_ema", options.weight_ema, 0, 0.999999, "",
           "act with the exponential moving average of the weights and statistics over training steps: its decay a "
           "step; 0: act with the last ones");
 }

@@ -118,9 +118,9 @@ TEST(Trainer, TheSameSeedGivesTheSameWeights) {
 }
 
 TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
-  for (const double averaging : {0.0, 0.9}) {
+  for (const double weight_ema : {0.0, 0.9}) {
     TrainingOptions options = tinyTraining();
-    options.averaging = averaging;
+    options.weight_ema = weight_ema;
     options.renormalise_from = 12;
     const auto whole = makeTrainer(options);
     runRound(*whole);
@@ -151,7 +151,7 @@ TEST(Trainer, NormalisesWithRunningStatisticsFromTheSetStepOn) {
 TEST(Trainer, ActsWithTheRunningMeanOfTheWeights) {
   const auto last = makeTrainer();
   TrainingOptions options = tinyTraining();
-  options.averaging = 0.75;
+  options.weight_ema = 0.75;
   const auto mean = makeTrainer(options);
   Eigen::VectorXf values = mean->policy().parameters().values(), buffers = mean->policy().parameters().buffers();
   int step = 0;
@@ -195,8 +195,8 @@ TEST(Trainer, WeightDecayKeepsWeightsSmall) {
 TEST(Trainer, TrainingThatDivergesIsAnError) {
   TrainingOptions options = tinyTraining();
   options.learning_rate = 1;
-  for (const double averaging : {0.0, 0.9}) {
-    options.averaging = averaging;
+  for (const double weight_ema : {0.0, 0.9}) {
+    options.weight_ema = weight_ema;
     const auto trainer = makeTrainer(options);
     runRound(*trainer);
     trainer->policy().parameters().values()[0] = std::numeric_limits<float>::quiet_NaN();

@@ -60,9 +60,9 @@ class Trainer {
 
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
   const TrainingOptions& options() const { return options_; }
-  /// The policy that acts and is shipped: with options().averaging, the moving average of the trained one.
-  model::TrainablePolicy& policy() { return averaged_ ? *averaged_ : *learner_; }
-  const model::TrainablePolicy& policy() const { return averaged_ ? *averaged_ : *learner_; }
+  /// The policy that acts and is shipped: with options().weight_ema, the moving average of the trained one.
+  model::TrainablePolicy& policy() { return ema_ ? *ema_ : *learner_; }
+  const model::TrainablePolicy& policy() const { return ema_ ? *ema_ : *learner_; }
   const std::deque<Trajectory>& window() const { return window_; }
 
  private:
@@ -84,7 +84,7 @@ class Trainer {
   TrainingOptions options_;
   std::uint64_t seed_;
   std::unique_ptr<model::TrainablePolicy> learner_;
-  std::unique_ptr<model::TrainablePolicy> averaged_;  // null where options_.averaging is 0
+  std::unique_ptr<model::TrainablePolicy> ema_;  // null where options_.weight_ema is 0
   nn::Adam adam_;
   std::deque<Trajectory> window_;
   int new_trajectories_ = 0;
