@@ -115,7 +115,7 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
 
 /// @return the loss before the step.
 double Trainer::trainStep(const std::vector<model::Sample>& batch, std::uint64_t dropout_seed) {
-  if (options_.renormalise_from > 0 && adam_.stepCount() >= options_.renormalise_from) {
+  if (options_.batch_renorm_start > 0 && adam_.stepCount() >= options_.batch_renorm_start) {
     learner_->setNormalisation(nn::Normalisation::kRunning);
   }
   const double loss = learner_->lossAndGradients(batch, dropout_seed);

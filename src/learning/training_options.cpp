@@ -46,7 +46,7 @@ void addOptimizer(TrainingOptions& options, core::OptionSet& set) {
   set.add("learning_rate", options.learning_rate, 0, 1, "", "of Adam, at the session's start");
   set.add("final_learning_rate", options.final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
   set.add("weight_decay", options.weight_decay, 0, 1, "", "of Adam, decoupled");
-  set.add("renormalise_from", options.renormalise_from, 0, 100000000, "steps",
+  set.add("batch_renorm_start", options.batch_renorm_start, 0, 100000000, "steps",
           "of training before batch norm normalises with its running statistics, as in acting, instead of each "
           "batch's; 0: it never does");
   set.add("weight_ema", options.weight_ema, 0, 0.999999, "",

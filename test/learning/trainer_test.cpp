@@ -121,7 +121,7 @@ TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
   for (const double weight_ema : {0.0, 0.9}) {
     TrainingOptions options = tinyTraining();
     options.weight_ema = weight_ema;
-    options.renormalise_from = 12;
+    options.batch_renorm_start = 12;
     const auto whole = makeTrainer(options);
     runRound(*whole);
     runRound(*whole);
@@ -141,7 +141,7 @@ TEST(Trainer, NormalisesWithRunningStatisticsFromTheSetStepOn) {
   int steps = 0;
   while (!never->roundDue()) never->add(syntheticTrajectory(never->trajectoriesSeen()));
   never->trainRound([&](double) { ++steps; });
-  options.renormalise_from = steps;
+  options.batch_renorm_start = steps;
   const auto then = makeTrainer(options);
   runRound(*then);
   EXPECT_EQ(never->policy().parameters().values(), then->policy().parameters().values());

@@ -30,7 +30,7 @@ struct TrainingOptions {
   double learning_rate = 1e-4;        ///< of Adam, at the session's start
   double final_learning_rate = 1e-4;  ///< at its end, reached along a cosine
   double weight_decay = 0;            ///< of Adam, decoupled
-  int renormalise_from = 0;           ///< training step from which batch norm takes running statistics; 0: never
+  int batch_renorm_start = 0;         ///< training step from which batch norm takes running statistics; 0: never
   double weight_ema = 0;              ///< decay of the exponential moving average of the weights that acts; 0: none
 
   core::OptionSet options();
