@@ -11,7 +11,7 @@ namespace {
 void addRounds(TrainingOptions& options, core::OptionSet& set) {
   set.add("trajectories", options.trajectories, 1, 100000000, "trajectories",
           "how many to roll out and learn from in all");
-  set.add("most_instances", options.most_instances, 0, sim::kMaxInstances, "",
+  set.add("max_instances", options.max_instances, 0, sim::kMaxInstances, "",
           "objects on the counter in training episodes at most: each draws its number from the task's to this one; the "
           "final score is on the task as it is. 0: as the task has them");
   set.add("trajectories_per_round", options.trajectories_per_round, 1, 100000, "trajectories",

@@ -76,7 +76,7 @@ std::vector<Instance> placeAll(const world::World& world, const std::vector<int>
 }
 
 std::vector<Instance> sampleInstances(const world::World& world, const Task& task, core::Random& random) {
-  const int more = task.mostInstances() - task.instances;
+  const int more = task.maxInstances() - task.instances;
   const int count = task.instances + (more > 0 ? random.below(more + 1) : 0);
   std::size_t most = 0;
   for (int i = 0; i < kTriesPerScene; ++i) {
@@ -90,7 +90,7 @@ std::vector<Instance> sampleInstances(const world::World& world, const Task& tas
   text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
        << world.options.placement_depth << " m of the counter, " << world.options.clearance
        << " m apart; lower instances of task '" << task.name
-       << "', most_instances in training or the world's clearance, or raise placement_width, placement_depth or "
+       << "', max_instances in training or the world's clearance, or raise placement_width, placement_depth or "
           "max_overhang; the kitchen's collision shapes take up room, too";
   throw core::Error(text.str());
 }

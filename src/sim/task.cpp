@@ -33,10 +33,10 @@ Task loadTask(const std::string& name_or_file) {
 
 Task withUpTo(std::int64_t most, Task task) {
   if (most > kMaxInstances) {
-    throw core::Error("most_instances is " + std::to_string(most) + "; there may be " + std::to_string(kMaxInstances) +
+    throw core::Error("max_instances is " + std::to_string(most) + "; there may be " + std::to_string(kMaxInstances) +
                       " at most");
   }
-  if (most > task.mostInstances()) task.most_instances = static_cast<int>(most);
+  if (most > task.maxInstances()) task.max_instances = static_cast<int>(most);
   return task;
 }
 

@@ -73,7 +73,7 @@ TEST_F(TrainingSessionTest, WeightsSayTheFieldOfViewOfItsWorld) {
 
 TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
   SessionOptions varied = options("varied");
-  varied.training.most_instances = 6;
+  varied.training.max_instances = 6;
   TrainingSession session(varied, world());
   const Evaluation evaluation = runSession(session, [](const Progress&) {});
   const auto agent = makePolicyAgent(session.trainer().policy(), model::ActionChoice::kArgmax, kHeldOutSeed);

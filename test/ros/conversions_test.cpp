@@ -83,17 +83,17 @@ TEST_F(ConversionsTest, ASceneComesBackBitForBit) {
 TEST_F(ConversionsTest, AGoalNamesItsFirstEpisode) {
   RunEpisodesGoal goal;
   goal.task = "hard";
-  goal.most_instances = 20;
+  goal.max_instances = 20;
   goal.seed = 5;
   goal.first_episode = 9;
   const sim::EpisodeKey key = firstEpisode(goal);
   EXPECT_EQ(key.task.name, "hard");
   EXPECT_EQ(key.task.instances, 12);
-  EXPECT_EQ(key.task.mostInstances(), 20);
+  EXPECT_EQ(key.task.maxInstances(), 20);
   EXPECT_EQ(key.seed, 5u);
   EXPECT_EQ(key.number, 9u);
-  goal.most_instances = 4000000000u;
-  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("most_instances is 4000000000"), std::string::npos);
+  goal.max_instances = 4000000000u;
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("max_instances is 4000000000"), std::string::npos);
 }
 
 TEST_F(ConversionsTest, AScenesFieldsNameItsEpisode) {

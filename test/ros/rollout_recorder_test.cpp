@@ -156,7 +156,7 @@ TEST_F(RolloutRecorderTest, DropsAnEpisodeOfTheSameNumberThatIsNotThePlans) {
   moved[0].scene.instances[0].x += 1e-9;
   EXPECT_NE(complaint(moved[0]).find("is not the episode"), std::string::npos);
   EXPECT_NE(add(own[0]), nullptr);
-  plan_.goal.most_instances = 6;
+  plan_.goal.max_instances = 6;
   recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
   EXPECT_NE(complaint(own[0]).find("up to 6 objects"), std::string::npos);
   EXPECT_NE(add(other[0]), nullptr);

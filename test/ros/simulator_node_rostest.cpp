@@ -215,7 +215,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   RunEpisodesGoal goal;
   goal.task = files_.task();
   goal.seed = 9;
-  goal.most_instances = 6;
+  goal.max_instances = 6;
   goal.first_episode = 20;
   goal.episodes = 2;
   client.sendGoal(goal);
@@ -255,11 +255,11 @@ TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
   EXPECT_NE(client.getState().getText().find("episodes is 0"), std::string::npos);
   goal.episodes = 1;
-  goal.most_instances = 4000000000u;
+  goal.max_instances = 4000000000u;
   client.sendGoal(goal);
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
-  EXPECT_NE(client.getState().getText().find("most_instances is 4000000000"), std::string::npos);
+  EXPECT_NE(client.getState().getText().find("max_instances is 4000000000"), std::string::npos);
 }
 
 TEST_F(SimulatorNodeTest, MarkersShowTheObjectsToWhoLooks) {

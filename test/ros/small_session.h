@@ -24,7 +24,7 @@ class SmallSession {
                             "/urdf/pan_tilt_camera.urdf\nimage_size: " + std::to_string(kImageSize) + "\n");
     write("short.yaml", "{instances: 3, requested: 1, steps: " + std::to_string(kSteps) + "}");
     write("tiny.yaml", "{trajectories: " + std::to_string(kTrajectories) +
-                           ", most_instances: 5, trajectories_per_round: 2, window: 4, epochs: 1, batch_size: 8, "
+                           ", max_instances: 5, trajectories_per_round: 2, window: 4, epochs: 1, batch_size: 8, "
                            "learning_rate: 1e-3, image_size: " +
                            std::to_string(kImageSize) + ", precision: f32}");
   }

@@ -114,7 +114,7 @@ TEST(Scene, KeepsClearOfCollisionShapesThatRiseAboveTheCounter) {
 
 TEST(Scene, DrawsTheNumberOfInstancesBetweenTheTasksTwo) {
   Task task = makeTask(2, 2);
-  task.most_instances = 5;
+  task.max_instances = 5;
   std::map<std::size_t, int> counts;
   for (std::uint64_t episode = 0; episode < 400; ++episode) {
     const EpisodeSetup setup = sampleEpisode(world(), {task, 1, episode});

@@ -71,9 +71,9 @@ TEST(Task, CannotRequestMoreThanThereIs) {
 
 TEST(Task, WithUpToSoManyInstancesHasNoFewerThanBefore) {
   EXPECT_EQ(withUpTo(12, loadTask("simple")).instances, 4);
-  EXPECT_EQ(withUpTo(12, loadTask("simple")).mostInstances(), 12);
-  EXPECT_EQ(withUpTo(12, withUpTo(20, loadTask("simple"))).mostInstances(), 20);
-  EXPECT_EQ(withUpTo(5, loadTask("hard")).mostInstances(), 12);
+  EXPECT_EQ(withUpTo(12, loadTask("simple")).maxInstances(), 12);
+  EXPECT_EQ(withUpTo(12, withUpTo(20, loadTask("simple"))).maxInstances(), 20);
+  EXPECT_EQ(withUpTo(5, loadTask("hard")).maxInstances(), 12);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace early_fusion::learning {
 struct TrainingOptions {
   // Which trajectories are collected, and how often each is trained on.
   int trajectories = 20000;            ///< in the whole session
-  int most_instances = 0;              ///< on the counter in training episodes at most: sim::withUpTo()
+  int max_instances = 0;               ///< on the counter in training episodes at most: sim::withUpTo()
   int trajectories_per_round = 50;     ///< new ones before the policy is trained on the window
   int window = 150;                    ///< most recent trajectories that are trained on
   double epochs = 3;                   ///< passes over the window in a round; a fraction takes a random part of it

@@ -34,7 +34,7 @@ class TrainingSession {
   /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
   /// The task of the episodes that it learns from.
-  sim::Task trainingTask() const { return sim::withUpTo(options_.training.most_instances, task_); }
+  sim::Task trainingTask() const { return sim::withUpTo(options_.training.max_instances, task_); }
   TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.training_expert); }
   /// Plays the episodes that the policy learns from, labelled by the training expert. The session must outlive it.
   RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }

@@ -29,7 +29,7 @@ using InstanceMask = std::uint32_t;
 
 /// Names an episode. Processes with the same world begin the same key with the same scene, request and orientation.
 struct EpisodeKey {
-  Task task;                 ///< with most_instances, on which the scene depends, too
+  Task task;                 ///< with max_instances, on which the scene depends, too
   std::uint64_t seed = 0;    ///< of the session
   std::uint64_t number = 0;  ///< of the episode in the session, from 0
 };

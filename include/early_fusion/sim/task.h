@@ -10,13 +10,13 @@ namespace early_fusion::sim {
 /// A task file: how hard an episode is (Walsman et al. 2019, sec. IV-A). The defaults are those of SIMPLE.
 struct Task {
   std::string name = "custom";
-  int instances = 4;       ///< objects on the counter, items drawn with repetition; at most kMaxInstances
-  int most_instances = 0;  ///< not an option, see withUpTo(): each episode draws its number up to this
-  int requested = 1;       ///< how many of the instances are requested
-  int steps = 48;          ///< actions in an episode
+  int instances = 4;      ///< objects on the counter, items drawn with repetition; at most kMaxInstances
+  int max_instances = 0;  ///< not an option, see withUpTo(): each episode draws its number up to this
+  int requested = 1;      ///< how many of the instances are requested
+  int steps = 48;         ///< actions in an episode
 
   core::OptionSet options();
-  int mostInstances() const { return most_instances > instances ? most_instances : instances; }
+  int maxInstances() const { return max_instances > instances ? max_instances : instances; }
   /// @throws Error if more instances are requested than there are.
   void validate(const std::string& source) const;
 };

@@ -23,7 +23,7 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
 }
 
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
-  return {sim::withUpTo(goal.most_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
+  return {sim::withUpTo(goal.max_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
 }
 
 sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header) {

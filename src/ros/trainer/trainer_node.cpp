@@ -79,7 +79,7 @@ void TrainerNode::rollOut() {
   plan.goal.seed = session_->options().seed;
   plan.goal.first_episode = trainer.trajectoriesSeen();
   plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
-  plan.goal.most_instances = trainer.options().most_instances;
+  plan.goal.max_instances = trainer.options().max_instances;
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
