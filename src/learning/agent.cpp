@@ -74,7 +74,7 @@ std::unique_ptr<Agent> makeSearchingAgent() {
     const sim::Episode& episode = *situation.state;
     const sim::EpisodeState& state = episode.state();
     return expert::searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation,
-                                  situation.heading, state.request)
+                                  situation.pan_direction, state.request)
         .action;
   });
 }

@@ -77,7 +77,7 @@ void RolloutRunner::observe(LockstepEpisode& one, bool draw) {
 Situation RolloutRunner::situation(const LockstepEpisode& one, bool drawn) const {
   const Trajectory& trajectory = one.recorder.trajectory();
   const TrajectoryStep& step = trajectory.steps.back();
-  Situation situation{trajectory.episode, &one.episode, {}, step.repeats, one.recorder.heading()};
+  Situation situation{trajectory.episode, &one.episode, {}, step.repeats, one.recorder.panDirection()};
   situation.observation.request = &step.request;
   if (drawn) situation.observation.frames = trajectory.frameStack(trajectory.steps.size() - 1);
   return situation;

@@ -76,11 +76,11 @@ LabelledRequest TrajectoryRecorder::label(const sim::EpisodeState& state, const 
   labelled.label =
       training_expert_ == TrainingExpert::kGreedy
           ? expert::label(*cone_, instances_, state.present, state.orientation, request)
-          : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, heading(), request);
+          : expert::searchingLabel(*cone_, instances_, state.present, state.orientation, panDirection(), request);
   return labelled;
 }
 
-expert::Heading TrajectoryRecorder::heading() const { return expert::headingOver(latest_pan_); }
+expert::PanDirection TrajectoryRecorder::panDirection() const { return expert::panDirectionOver(latest_pan_); }
 
 /// @param moved whether the frame has changed.
 ///

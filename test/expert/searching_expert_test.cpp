@@ -26,36 +26,37 @@ const core::Vocabulary& vocabulary() { return world().objects.vocabulary(); }
 constexpr char kFarLeft[] = "peach", kFarRight[] = "rubiks_cube";
 
 /// What the expert does in a scene with these two.
-Action atApart(Orientation orientation, Heading heading, const std::vector<std::string>& request) {
+Action atApart(Orientation orientation, PanDirection pan_direction, const std::vector<std::string>& request) {
   static const std::vector<sim::Instance> instances = {{vocabulary().index(kFarLeft), 0.75, 0.5, 0},
                                                        {vocabulary().index(kFarRight), 0.75, -0.5, 0}};
   static const sim::ConeTable cone(world(), instances);
-  return searchingLabel(cone, instances, 0b11, orientation, heading, vocabulary().request(request)).action;
+  return searchingLabel(cone, instances, 0b11, orientation, pan_direction, vocabulary().request(request)).action;
 }
 
-TEST(SearchingExpert, KeepsToItsHeadingUntilTheViewHoldsThatSide) {
-  EXPECT_EQ(atApart({5, 12}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
-  EXPECT_EQ(atApart({5, 12}, Heading::kRight, {kFarRight}), Action::kPanRight);
-  EXPECT_EQ(atApart({-5, 12}, Heading::kRight, {kFarLeft}), Action::kPanRight);
-  EXPECT_EQ(atApart({24, 12}, Heading::kLeft, {kFarRight}), Action::kPanRight);
-  EXPECT_EQ(atApart({-24, 12}, Heading::kRight, {kFarLeft}), Action::kPanLeft);
+TEST(SearchingExpert, KeepsToItsPanDirectionUntilTheViewHoldsThatSide) {
+  EXPECT_EQ(atApart({5, 12}, PanDirection::kLeft, {kFarRight}), Action::kPanLeft);
+  EXPECT_EQ(atApart({5, 12}, PanDirection::kRight, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-5, 12}, PanDirection::kRight, {kFarLeft}), Action::kPanRight);
+  EXPECT_EQ(atApart({24, 12}, PanDirection::kLeft, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-24, 12}, PanDirection::kRight, {kFarLeft}), Action::kPanLeft);
 }
 
 TEST(SearchingExpert, StartsWithTheNearerEnd) {
-  EXPECT_EQ(atApart({6, 12}, Heading::kStart, {kFarRight}), Action::kPanLeft);
-  EXPECT_EQ(atApart({-6, 12}, Heading::kStart, {kFarLeft}), Action::kPanRight);
-  EXPECT_EQ(atApart({12, 12}, Heading::kStart, {kFarRight}), Action::kPanRight) << "the view holds that end already";
+  EXPECT_EQ(atApart({6, 12}, PanDirection::kStart, {kFarRight}), Action::kPanLeft);
+  EXPECT_EQ(atApart({-6, 12}, PanDirection::kStart, {kFarLeft}), Action::kPanRight);
+  EXPECT_EQ(atApart({12, 12}, PanDirection::kStart, {kFarRight}), Action::kPanRight)
+      << "the view holds that end already";
 }
 
-TEST(SearchingExpert, GoesAcrossTheMiddleWithoutAHeading) {
-  EXPECT_EQ(atApart({6, 12}, Heading::kNone, {kFarRight}), Action::kPanRight);
-  EXPECT_EQ(atApart({-6, 12}, Heading::kNone, {kFarLeft}), Action::kPanLeft);
+TEST(SearchingExpert, GoesAcrossTheMiddleWithoutAPanDirection) {
+  EXPECT_EQ(atApart({6, 12}, PanDirection::kNone, {kFarRight}), Action::kPanRight);
+  EXPECT_EQ(atApart({-6, 12}, PanDirection::kNone, {kFarLeft}), Action::kPanLeft);
 }
 
 TEST(SearchingExpert, TiltsBeforeItTurnsWhereFrontOrBackIsOutOfView) {
-  EXPECT_EQ(atApart({24, 22}, Heading::kLeft, {kFarRight}), Action::kTiltUp);
-  EXPECT_EQ(atApart({24, 1}, Heading::kLeft, {kFarRight}), Action::kTiltDown);
-  EXPECT_EQ(atApart({0, 1}, Heading::kLeft, {kFarRight}), Action::kPanLeft);
+  EXPECT_EQ(atApart({24, 22}, PanDirection::kLeft, {kFarRight}), Action::kTiltUp);
+  EXPECT_EQ(atApart({24, 1}, PanDirection::kLeft, {kFarRight}), Action::kTiltDown);
+  EXPECT_EQ(atApart({0, 1}, PanDirection::kLeft, {kFarRight}), Action::kPanLeft);
 }
 
 /// The shipped world, but for a text in its camera's or its own file.
@@ -85,7 +86,7 @@ TEST(SearchingExpert, LooksFromEndToEndWhicheverWayTheCameraIsBuilt) {
       std::vector<int> pans;
       for (int step = 0; step < 300; ++step) {
         pans.push_back(at.pan);
-        at = world::turned(at, searchingLabel(cone, instances, 1, at, headingOver(pans), {0}).action);
+        at = world::turned(at, searchingLabel(cone, instances, 1, at, panDirectionOver(pans), {0}).action);
         ASSERT_TRUE(cone.lattice().contains(at));
       }
       for (auto half = pans.begin(); half != pans.end(); half += 150) {
@@ -95,7 +96,7 @@ TEST(SearchingExpert, LooksFromEndToEndWhicheverWayTheCameraIsBuilt) {
     }
   }
   const sim::ConeTable cone(*mostly_left, {{0, -2, 0, 0}});
-  EXPECT_EQ(searchingLabel(cone, {{0, -2, 0, 0}}, 1, {8, 12}, Heading::kStart, {0}).action, Action::kPanRight);
+  EXPECT_EQ(searchingLabel(cone, {{0, -2, 0, 0}}, 1, {8, 12}, PanDirection::kStart, {0}).action, Action::kPanRight);
 }
 
 TEST(SearchingExpert, RemovesOnTheWayWhatIsLargeEnoughToHideSomething) {
@@ -107,7 +108,8 @@ TEST(SearchingExpert, RemovesOnTheWayWhatIsLargeEnoughToHideSomething) {
     const Orientation at_it = ahead[ahead.size() / 2];
     ASSERT_FALSE(isInView(cone, 1, at_it));
     const auto action = [&](sim::InstanceMask present, const std::string& requested) {
-      return searchingLabel(cone, instances, present, at_it, Heading::kLeft, vocabulary().request({requested})).action;
+      return searchingLabel(cone, instances, present, at_it, PanDirection::kLeft, vocabulary().request({requested}))
+          .action;
     };
     EXPECT_EQ(action(0b11, "mug"), is_removed ? Action::kRemove : Action::kPanLeft) << name;
     EXPECT_EQ(action(0b10, "mug"), Action::kPanLeft) << "it is gone";
@@ -117,8 +119,8 @@ TEST(SearchingExpert, RemovesOnTheWayWhatIsLargeEnoughToHideSomething) {
 }
 
 TEST(SearchingExpert, IdlesWhenNothingRequestedIsThere) {
-  EXPECT_EQ(atApart({0, 12}, Heading::kLeft, {}), Action::kIdle);
-  EXPECT_EQ(atApart({0, 12}, Heading::kLeft, {"mug"}), Action::kIdle);
+  EXPECT_EQ(atApart({0, 12}, PanDirection::kLeft, {}), Action::kIdle);
+  EXPECT_EQ(atApart({0, 12}, PanDirection::kLeft, {"mug"}), Action::kIdle);
 }
 
 TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
@@ -134,10 +136,10 @@ TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
                                       [&](const sim::Instance& other) { return other.item == instances[i].item; });
       if (same > 1) continue;
       const core::Request request{instances[i].item};
-      const auto search = [&](Heading heading) {
-        return searchingLabel(episode.cone(), instances, state.present, state.orientation, heading, request);
+      const auto search = [&](PanDirection pan_direction) {
+        return searchingLabel(episode.cone(), instances, state.present, state.orientation, pan_direction, request);
       };
-      const Label left = search(Heading::kLeft), right = search(Heading::kRight);
+      const Label left = search(PanDirection::kLeft), right = search(PanDirection::kRight);
       const bool in_view = isInView(episode.cone(), static_cast<int>(i), state.orientation);
       ++cases[in_view];
       if (in_view) {
@@ -147,7 +149,7 @@ TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
         EXPECT_EQ(left.steps, greedy.steps);
         EXPECT_EQ(left.action, right.action);
       } else {
-        const bool turns = std::abs(state.orientation.pan) >= 10;  // with one of the headings
+        const bool turns = std::abs(state.orientation.pan) >= 10;  // with one of the pan directions
         if (left.action == Action::kRemove) {
           EXPECT_EQ(right.action, Action::kRemove);
           EXPECT_GE(episode.cone().nearest(state.orientation, state.present), 0);
@@ -199,9 +201,9 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
     while (!episode.finished()) {
       const sim::EpisodeState state = episode.state();
       pans.push_back(state.orientation.pan);
-      const Heading heading = headingOver(pans);
-      episode.step(searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation, heading,
-                                  state.request)
+      const PanDirection pan_direction = panDirectionOver(pans);
+      episode.step(searchingLabel(episode.cone(), episode.setup().instances, state.present, state.orientation,
+                                  pan_direction, state.request)
                        .action);
     }
     f1 += episode.score().f1 / kEpisodes;

@@ -84,21 +84,23 @@ TEST_F(TrajectoryRecorderTest, TheSearchingExpertKnowsTheWayThatTheCameraHasCome
   sim::Episode episode(shippedWorld(), task_, setup);
   const std::vector<sim::Instance>& instances = episode.setup().instances;
   using core::Action;
-  using expert::Heading;
+  using expert::PanDirection;
   const std::vector<std::pair<Action, Heading>> moves = {
-      {Action::kPanLeft, Heading::kStart}, {Action::kTiltUp, Heading::kLeft},  {Action::kTiltUp, Heading::kLeft},
-      {Action::kPanRight, Heading::kNone}, {Action::kIdle, Heading::kRight},   {Action::kPanLeft, Heading::kRight},
-      {Action::kIdle, Heading::kLeft},     {Action::kCollect, Heading::kLeft}, {Action::kIdle, Heading::kNone}};
+      {Action::kPanLeft, PanDirection::kStart}, {Action::kTiltUp, PanDirection::kLeft},
+      {Action::kTiltUp, PanDirection::kLeft},   {Action::kPanRight, PanDirection::kNone},
+      {Action::kIdle, PanDirection::kRight},    {Action::kPanLeft, PanDirection::kRight},
+      {Action::kIdle, PanDirection::kLeft},     {Action::kCollect, PanDirection::kLeft},
+      {Action::kIdle, PanDirection::kNone}};
   int searched = 0;
   for (const auto& [action, heading] : moves) {
     const sim::EpisodeState& state = episode.state();
     const TrajectoryStep& step = recorder.record(state, frameAt(state.step));
-    EXPECT_EQ(recorder.heading(), heading) << "step " << state.step;
+    EXPECT_EQ(recorder.panDirection(), pan_direction) << "step " << state.step;
     EXPECT_EQ(step.label.action,
               expert::label(episode.cone(), instances, state.present, state.orientation, state.request).action);
     for (const LabelledRequest& labelled : step.labelled_requests) {
       EXPECT_EQ(labelled.label.action, expert::searchingLabel(episode.cone(), instances, state.present,
-                                                              state.orientation, heading, labelled.request)
+                                                              state.orientation, pan_direction, labelled.request)
                                            .action);
       searched += labelled.label.action !=
                   expert::label(episode.cone(), instances, state.present, state.orientation, labelled.request).action;

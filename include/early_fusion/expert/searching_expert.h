@@ -7,10 +7,10 @@ namespace early_fusion::expert {
 
 /// Which way the camera was last panned over the frames that a policy sees, core::kStackedFrames: left, right, not at
 /// all, or not at all and there have not been so many yet.
-enum class Heading { kStart, kNone, kLeft, kRight };
+enum class PanDirection { kStart, kNone, kLeft, kRight };
 
 /// @param pans of the frames so far, the oldest first [steps]; only the last core::kStackedFrames count.
-Heading headingOver(const std::vector<int>& pans);
+PanDirection panDirectionOver(const std::vector<int>& pans);
 
 /// Whether a frame from `orientation` shows more than the edge of an instance, if nothing occluded it.
 bool isInView(const sim::ConeTable& cone, int instance, world::Orientation orientation);
@@ -24,8 +24,8 @@ bool isInView(const sim::ConeTable& cone, int instance, world::Orientation orien
 ///
 /// Each label is a function of the last few frames. The greedy expert's way to an unseen object is not: a policy that
 /// imitates it pans back and forth where the object is equally likely on either side.
-/// @param heading the camera's pan direction over the frames that the policy sees.
+/// @param pan_direction the camera's pan direction over the frames that the policy sees.
 Label searchingLabel(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
-                     world::Orientation orientation, Heading heading, const core::Request& request);
+                     world::Orientation orientation, PanDirection pan_direction, const core::Request& request);
 
 }  // namespace early_fusion::expert

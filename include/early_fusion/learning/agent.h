@@ -19,10 +19,11 @@ namespace early_fusion::learning {
 /// What an agent decides from at one step of an episode. Nothing is owned.
 struct Situation {
   std::uint64_t episode = 0;
-  const sim::Episode* state = nullptr;                ///< the truth, for agents that may see it
-  model::Observation observation;                     ///< for agents that may not
-  bool repeats = false;                               ///< observation and request are those of the step before
-  expert::Heading heading = expert::Heading::kStart;  ///< the pan direction over the observation's frames
+  const sim::Episode* state = nullptr;  ///< the truth, for agents that may see it
+  model::Observation observation;       ///< for agents that may not
+  bool repeats = false;                 ///< observation and request are those of the step before
+  expert::PanDirection pan_direction =
+      expert::PanDirection::kStart;  ///< the pan direction over the observation's frames
 };
 
 /// Chooses actions in several episodes at once.
