@@ -7,13 +7,13 @@ namespace early_fusion::nn {
 namespace {
 
 /// The greatest number of a 2x2 window in each channel, and which of the four it is; the first where several are.
-struct Greatest {
+struct Max {
   Lanes value;
   IntLanes index;
 };
 
-inline Greatest greatest(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
-  Greatest best{a, IntLanes{}};
+inline Max maxOf(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+  Max best{a, IntLanes{}};
   best.index = b > best.value ? IntLanes{} + 1 : best.index;
   best.value = b > best.value ? b : best.value;
   best.index = c > best.value ? IntLanes{} + 2 : best.index;
@@ -25,7 +25,7 @@ inline Greatest greatest(const Lanes& a, const Lanes& b, const Lanes& c, const L
 
 /// The window at (row, column) of a map whose rows and columns may be the first or the last, channels [c, c + kLanes).
 template <class T>
-Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int row, int column, int c) {
+Max borderWindow(const MapShape& shape, const T* y, const float* bias, int row, int column, int c) {
   Lanes v[4];
   for (int q = 0; q < 4; ++q) {
     const int py = 2 * row + q / 2;
@@ -34,10 +34,10 @@ Greatest borderWindow(const MapShape& shape, const T* y, const float* bias, int 
     v[q] = loadLanes(y + shape.firstOf(c) + (std::size_t(py) * shape.width + px) * shape.stride()) +
            loadLanes(bias + border * shape.channels + c);
   }
-  return greatest(v[0], v[1], v[2], v[3]);
+  return maxOf(v[0], v[1], v[2], v[3]);
 }
 
-/// Calls sink(column, greatest) for every window along one pooled row.
+/// Calls sink(column, max_logit) for every window along one pooled row.
 template <class T, class Sink>
 inline void poolRow(const MapShape& shape, const T* y, const float* bias, int row, int c, const Sink& sink) {
   const int columns = shape.width / 2;
@@ -52,8 +52,8 @@ inline void poolRow(const MapShape& shape, const T* y, const float* bias, int ro
   sink(0, borderWindow(shape, y, bias, row, 0, c));
   for (int column = 1; column < columns - 1; ++column) {
     const std::size_t left = 2 * column * stride;
-    Greatest best = greatest(loadLanes(top + left), loadLanes(top + left + stride), loadLanes(bottom + left),
-                             loadLanes(bottom + left + stride));
+    Max best = maxOf(loadLanes(top + left), loadLanes(top + left + stride), loadLanes(bottom + left),
+                     loadLanes(bottom + left + stride));
     best.value += inner_bias;
     sink(column, best);
   }
@@ -81,7 +81,7 @@ void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std
       // differs from a number amid the row.
       const Lanes pivot = relu(borderWindow(shape, y, bias, row, columns / 2, c).value);
       Lanes sum{}, square_sum{};
-      poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
+      poolRow(shape, y, bias, row, c, [&](int column, const Max& best) {
         const std::size_t at = start + std::size_t(column) * channels;
         const Lanes positive = relu(best.value);
         storeLanes(z + at, positive);
@@ -106,7 +106,7 @@ void poolNormalise(const MapShape& shape, const T* y, const float* bias, const f
       T* out = x + pooled.firstOf(c) + row * pooled.width * pooled.stride();
       const Lanes scales = loadLanes(scale + c);
       const Lanes shifts = loadLanes(shift + c);
-      poolRow(shape, y, bias, row, c, [&](int column, const Greatest& best) {
+      poolRow(shape, y, bias, row, c, [&](int column, const Max& best) {
         storeLanes(out + column * pooled.stride(), scales * relu(best.value) + shifts);
       });
     }

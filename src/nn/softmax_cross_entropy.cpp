@@ -10,25 +10,25 @@ namespace {
 
 /// log sum_k exp(logits(row, k)), over all classes but `without`.
 double logSumExp(const Matrix& logits, int row, Eigen::Index without = -1) {
-  double greatest = -std::numeric_limits<double>::infinity();
+  double max_logit = -std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < logits.cols(); ++k) {
-    if (k != without) greatest = std::max<double>(greatest, logits(row, k));
+    if (k != without) max_logit = std::max<double>(max_logit, logits(row, k));
   }
   double sum = 0;
   for (Eigen::Index k = 0; k < logits.cols(); ++k) {
-    if (k != without) sum += std::exp(logits(row, k) - greatest);
+    if (k != without) sum += std::exp(logits(row, k) - max_logit);
   }
-  return greatest + std::log(sum);
+  return max_logit + std::log(sum);
 }
 
 }  // namespace
 
 void softmax(const float* logits, int classes, float* probabilities) {
-  const float greatest = *std::max_element(logits, logits + classes);
+  const float max_logit = *std::max_element(logits, logits + classes);
   double sum = 0;
-  for (int k = 0; k < classes; ++k) sum += std::exp(double(logits[k]) - greatest);
+  for (int k = 0; k < classes; ++k) sum += std::exp(double(logits[k]) - max_logit);
   for (int k = 0; k < classes; ++k) {
-    probabilities[k] = static_cast<float>(std::exp(double(logits[k]) - greatest) / sum);
+    probabilities[k] = static_cast<float>(std::exp(double(logits[k]) - max_logit) / sum);
   }
 }
 

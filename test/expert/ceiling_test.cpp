@@ -16,10 +16,10 @@ constexpr int kEpisodes = 1000;
 
 struct Ceiling {
   const char* task;
-  double least_f1;
-  double most_idle;          ///< share of the expert's labels
-  double least_out_of_view;  ///< share of the instances of requested types that start outside the picture
-  double least_occluded;     ///< ... that another instance hides from some camera orientation
+  double min_f1;
+  double max_idle;         ///< share of the expert's labels
+  double min_out_of_view;  ///< share of the instances of requested types that start outside the picture
+  double min_occluded;     ///< ... that another instance hides from some camera orientation
 };
 
 struct Statistics {
@@ -77,10 +77,10 @@ TEST_P(ShippedWorld, IsAsWideAndClutteredAsTheExpertCanManage) {
   const double out_of_view = static_cast<double>(statistics.out_of_view) / statistics.wanted;
   const double occluded = static_cast<double>(statistics.occluded) / statistics.wanted;
   EXPECT_EQ(statistics.unreachable, 0);
-  EXPECT_GE(statistics.f1, GetParam().least_f1);
-  EXPECT_LE(idle, GetParam().most_idle);
-  EXPECT_GE(out_of_view, GetParam().least_out_of_view);
-  EXPECT_GE(occluded, GetParam().least_occluded);
+  EXPECT_GE(statistics.f1, GetParam().min_f1);
+  EXPECT_LE(idle, GetParam().max_idle);
+  EXPECT_GE(out_of_view, GetParam().min_out_of_view);
+  EXPECT_GE(occluded, GetParam().min_occluded);
   EXPECT_GT(statistics.removed, 0);
   RecordProperty("f1", std::to_string(statistics.f1));
   RecordProperty("idle", std::to_string(idle));

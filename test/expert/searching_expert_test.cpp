@@ -191,7 +191,7 @@ class SearchingExpertIn : public testing::TestWithParam<std::pair<const char*, d
 // What can be done without knowing what the camera hasn't seen. On these scenes the greedy expert has 0.982, 0.985,
 // 0.973.
 TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
-  const auto& [name, least_f1] = GetParam();
+  const auto& [name, min_f1] = GetParam();
   const sim::Task task = sim::loadTask(name);
   constexpr int kEpisodes = 500;
   double f1 = 0;
@@ -208,7 +208,7 @@ TEST_P(SearchingExpertIn, FindsNearlyAllInTime) {
     }
     f1 += episode.score().f1 / kEpisodes;
   }
-  EXPECT_GE(f1, least_f1);
+  EXPECT_GE(f1, min_f1);
   RecordProperty("f1", std::to_string(f1));
 }
 

@@ -74,7 +74,7 @@ TEST_P(ConvBlockTest, InBfloat16IsCloseToFloat) {
   EXPECT_LT(worstError(half.forward(), full.forward()), 0.04);  // 2^-8 a rounding, and the norm magnifies
   full.backward(factors);
   half.backward(factors);
-  // Where rounding changes which pixel of a window is the greatest, single gradients go elsewhere; most may not.
+  // Where rounding changes which pixel of a window is the max_logit, single gradients go elsewhere; most may not.
   const auto a = full.parameters.gradients(), b = half.parameters.gradients();
   EXPECT_LT((a - b).norm(), 0.15f * a.norm());
   EXPECT_GT(a.dot(b), 0.99f * a.norm() * b.norm());

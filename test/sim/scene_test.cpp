@@ -137,14 +137,14 @@ TEST(Scene, ATaskOfOneNumberOfInstancesIsTheSameWhateverElseIsAsked) {
 TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
   std::set<int> items, pans, tilts;
   bool repeated = false;
-  double least_theta = 10, most_theta = -10;
+  double min_theta = 10, max_theta = -10;
   for (std::uint64_t episode = 0; episode < 400; ++episode) {
     const EpisodeSetup setup = sampleEpisode(world(), {makeTask(4, 1), 2, episode});
     std::set<int> here;
     for (const Instance& instance : setup.instances) {
       here.insert(instance.item);
-      least_theta = std::min(least_theta, instance.theta);
-      most_theta = std::max(most_theta, instance.theta);
+      min_theta = std::min(min_theta, instance.theta);
+      max_theta = std::max(max_theta, instance.theta);
     }
     items.insert(here.begin(), here.end());
     repeated |= here.size() < 4;
@@ -156,8 +156,8 @@ TEST(Scene, DrawsEveryTypeWithRepetitionAndEveryOrientation) {
   EXPECT_TRUE(repeated);
   EXPECT_EQ(static_cast<int>(pans.size()), world().rig.lattice().panCount());
   EXPECT_EQ(static_cast<int>(tilts.size()), world().rig.lattice().tiltCount());
-  EXPECT_LT(least_theta, -3.1);
-  EXPECT_GT(most_theta, 3.1);
+  EXPECT_LT(min_theta, -3.1);
+  EXPECT_GT(max_theta, 3.1);
 }
 
 TEST(Scene, RequestsASubsetOfTheInstances) {
