@@ -17,14 +17,14 @@ const world::World& world() {
   return *kitchen;
 }
 
-/// A camera that wanders over the counter: another picture in every frame.
+/// A camera that wanders over the counter: another image in every frame.
 Eigen::Isometry3d wanderingCamera(int frame) {
   const double pan = 0.5 * std::sin(0.013 * frame), tilt = 0.45 + 0.15 * std::sin(0.031 * frame);
   return world::lookAlong({0, 0, 1.35},
                           {std::cos(pan) * std::cos(tilt), std::sin(pan) * std::cos(tilt), -std::sin(tilt)});
 }
 
-/// Pictures a second; the argument is the number of objects. Every thread has a rasterizer of its own.
+/// Images a second; the argument is the number of objects. Every thread has a rasterizer of its own.
 void render(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
   rasterizer.setObjects(world::handmadeScene(static_cast<int>(state.range(0)), kItems));

@@ -54,7 +54,7 @@ def draw(axes, runs, across, scale, column, width):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", metavar="NAME=FOLDER", help="a run folder, which holds curve.csv")
-    parser.add_argument("--out", required=True, help="the picture: .svg or .png")
+    parser.add_argument("--out", required=True, help="the image: .svg or .png")
     parser.add_argument("--smooth", type=int, default=10, help="rounds that a point is the mean of [%(default)s]")
     options = parser.parse_args()
     groups = {}

@@ -6,15 +6,15 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/image_size.h"
 #include "early_fusion/learning/evaluation.h"
+#include "images.h"
 #include "named_agent.h"
-#include "pictures.h"
 
 namespace early_fusion::cli {
 
 namespace {
 
 struct RenderOptions {
-  std::string picture = "step";
+  std::string image = "step";
   std::string task = "simple";
   std::string policy = "expert";
   std::string world;
@@ -30,8 +30,8 @@ struct RenderOptions {
 };
 
 core::OptionSet RenderOptions::options() {
-  core::OptionSet set("picture");
-  set.addChoice("picture", picture, {"step", "episode", "objects"},
+  core::OptionSet set("render");
+  set.addChoice("image", image, {"step", "episode", "objects"},
                 "one step, a sheet of the episode, or a sheet of all objects");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "with --episode, which episode");
@@ -69,8 +69,8 @@ std::vector<PlayedStep> play(const RenderOptions& options, const world::World& w
 
 void render(const RenderOptions& options) {
   const auto world = world::loadWorld(options.world);
-  const PictureStyle style{options.size, options.scale, options.annotate};
-  if (options.picture == "objects") {
+  const ImageStyle style{options.size, options.scale, options.annotate};
+  if (options.image == "objects") {
     writePng(options.out, drawObjects(*world, style));
     return;
   }
@@ -80,7 +80,7 @@ void render(const RenderOptions& options) {
                       std::to_string(task.steps - 1));
   }
   const std::vector<PlayedStep> played = play(options, *world, task);
-  if (options.picture == "episode") {
+  if (options.image == "episode") {
     writePng(options.out, drawEpisode(*world, played, style));
   } else {
     writePng(options.out, drawStep(*world, played[options.step], style));

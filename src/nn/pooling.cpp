@@ -6,7 +6,7 @@ namespace early_fusion::nn {
 
 namespace {
 
-/// The greatest number of a 2x2 window in each channel, and which of the four it is; the first where several are.
+/// The maximum of a 2x2 window in each channel, and which of the four it is; the first where several are.
 struct Max {
   Lanes value;
   IntLanes index;

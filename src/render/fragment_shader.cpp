@@ -115,7 +115,7 @@ void FragmentShader::shade(const Viewpoint& viewpoint, const MeshDrawer& drawer,
   std::fill(sums_.begin(), sums_.end(), 0u);
   addFragments(samples);
   flush();
-  for (int i = count_; i < kLanes; ++i) id_[i] = 0;  // a triangle of an earlier picture may be gone
+  for (int i = count_; i < kLanes; ++i) id_[i] = 0;  // a triangle of an earlier image may be gone
   shadeLanes(0, count_);
   count_ = 0;
   writeMeans(image);

@@ -12,7 +12,7 @@
 
 namespace early_fusion::render {
 
-/// Where the pictures are taken from.
+/// Where the images are taken from.
 struct Viewpoint {
   RenderPose world_from_camera;
   float focal_length;  ///< [subsamples]

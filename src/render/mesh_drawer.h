@@ -29,7 +29,7 @@ struct alignas(32) VisibleTriangle {
 static_assert(sizeof(VisibleTriangle) == 8 * sizeof(float));
 
 /// Takes meshes through transformation, clipping, culling and set-up to the samples of a screen, and keeps what shading
-/// needs of them. Grows its memory with the first pictures, then keeps it.
+/// needs of them. Grows its memory with the first images, then keeps it.
 class MeshDrawer {
  public:
   /// Forgets the triangles drawn so far. Their numbers, the ids of samples, begin at 1.
@@ -71,7 +71,7 @@ class MeshDrawer {
   std::vector<FloatLanes> clipped_uv_area_;
   std::vector<std::int32_t> clipped_material_;
   TriangleBatch batch_;  // the triangles being set up
-  // Of the whole picture.
+  // Of the whole image.
   std::vector<ShadingVertex> vertices_;
   int first_vertex_ = 0;  // of the mesh in hand
   std::vector<VisibleTriangle> triangles_;

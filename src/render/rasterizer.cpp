@@ -97,7 +97,7 @@ class Rasterizer::Implementation {
   }
 
   int image_size_;
-  float centre_;        // of the picture [subsamples]
+  float centre_;        // of the image [subsamples]
   float focal_length_;  // [subsamples]
   std::shared_ptr<const RenderAssets> assets_;
   ShadowMap shadow_map_;

@@ -33,7 +33,7 @@ struct RenderMesh {
 };
 
 /// A pose in single precision. Rounded to 2^-30, so that the last bits of its computation, which differ between
-/// instruction sets, don't reach the picture.
+/// instruction sets, don't reach the image.
 struct RenderPose {
   float rotation[3][3];
   float translation[3];  ///< [m]

@@ -74,7 +74,7 @@ void checkDirection(const Eigen::Vector3d& axis, const Eigen::Vector3d& forward,
                     const std::string& joint, const char* direction, const std::string& file) {
   if (axis.cross(forward).dot(expected) > 1e-6) return;
   throw core::Error(file + ": positive angles of joint '" + joint + "' must turn the camera " + direction +
-                    " in its picture; they don't: check the joint's axis and the optical frame (z forward, x right, y "
+                    " in its image; they don't: check the joint's axis and the optical frame (z forward, x right, y "
                     "down)");
 }
 

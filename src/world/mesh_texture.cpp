@@ -68,11 +68,11 @@ cv::Mat decodeEmbedded(const aiTexture& embedded) {
   return bgr;
 }
 
-cv::Mat readPicture(const aiScene& scene, const std::string& name, const std::string& mesh_path) {
+cv::Mat readImage(const aiScene& scene, const std::string& name, const std::string& mesh_path) {
   if (const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str())) {
-    const cv::Mat picture = decodeEmbedded(*embedded);
-    if (picture.empty()) throw core::Error(mesh_path + ": the embedded texture '" + name + "' cannot be decoded");
-    return picture;
+    const cv::Mat image = decodeEmbedded(*embedded);
+    if (image.empty()) throw core::Error(mesh_path + ": the embedded texture '" + name + "' cannot be decoded");
+    return image;
   }
   std::string file = name;
   std::replace(file.begin(), file.end(), '\\', '/');
@@ -86,13 +86,13 @@ cv::Mat readPicture(const aiScene& scene, const std::string& name, const std::st
       throw core::Error(mesh_path + ": its texture cannot be read: " + error.what());
     }
   }();
-  const cv::Mat picture = bytes.empty()
-                              ? cv::Mat()
-                              : cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
-  if (picture.empty()) {
+  const cv::Mat image = bytes.empty()
+                            ? cv::Mat()
+                            : cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+  if (image.empty()) {
     throw core::Error(mesh_path + ": its texture " + file + " is not an image that can be decoded; use PNG or JPEG");
   }
-  return picture;
+  return image;
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ Texture readTexture(const aiScene& scene, const aiMaterial& material, const std:
   for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
     aiString name;
     if (material.GetTexture(type, 0, &name) == AI_SUCCESS && name.length > 0) {
-      return squareTexture(readPicture(scene, name.C_Str(), mesh_path));
+      return squareTexture(readImage(scene, name.C_Str(), mesh_path));
     }
   }
   return plainTexture(material);

@@ -43,7 +43,7 @@ core::OptionSet WorldOptions::options() {
   set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
   set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects, and between an object and the kitchen");
   set.add("max_overhang", max_overhang, 0.0, 1.0, "m", "of an object over an edge of the counter's top");
-  core::addImageSize(set, "image_size", image_size, "edge of the square picture");
+  core::addImageSize(set, "image_size", image_size, "edge of the square image");
   set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
   set.add("max_triangles", max_triangles, 16, 1000000, "", "a mesh with more is simplified when it is loaded");
   return set;

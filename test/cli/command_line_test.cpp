@@ -54,8 +54,8 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
   const std::pair<std::string, std::vector<std::string>> commands[] = {
       {"evaluate", {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--world"}},
       {"render",
-       {"--picture", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate",
-        "--world", "--out"}},
+       {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
+        "--out"}},
       {"inspect", {"weights", "--task", "--world"}},
       {"urdf", {"camera", "kitchen", "--world"}},
       {"train", {"--task"}}};
@@ -107,9 +107,9 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   ASSERT_EQ(run("render --task medium --seed 2 --step 7 --size 64 --annotate --scale 2 --out " + path("s.png")), 0)
       << errors_;
   EXPECT_EQ(cv::imread(path("s.png")).size(), cv::Size(128, 128));
-  ASSERT_EQ(run("render --picture objects --size 32 --out " + path("o.png")), 0) << errors_;
+  ASSERT_EQ(run("render --image objects --size 32 --out " + path("o.png")), 0) << errors_;
   EXPECT_EQ(cv::imread(path("o.png")).size(), cv::Size(128, 128));  // 16 objects, four in a row
-  ASSERT_EQ(run("render --picture episode --size 32 --out " + path("e.png")), 0) << errors_;
+  ASSERT_EQ(run("render --image episode --size 32 --out " + path("e.png")), 0) << errors_;
   EXPECT_EQ(cv::imread(path("e.png")).cols, 128);
   EXPECT_GE(cv::imread(path("e.png")).rows, 96);  // every fifth of 48 steps at least, four in a row
 }

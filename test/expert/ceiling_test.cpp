@@ -18,7 +18,7 @@ struct Ceiling {
   const char* task;
   double min_f1;
   double max_idle;         ///< share of the expert's labels
-  double min_out_of_view;  ///< share of the instances of requested types that start outside the picture
+  double min_out_of_view;  ///< share of the instances of requested types that start outside the image
   double min_occluded;     ///< ... that another instance hides from some camera orientation
 };
 

@@ -165,7 +165,7 @@ TEST(SearchingExpert, IsTheGreedyExpertForWhatIsInView) {
   EXPECT_GT(cases[false], 50);
 }
 
-TEST(SearchingExpert, InViewMeansThatItsMiddleOrMoreIsInThePicture) {
+TEST(SearchingExpert, InViewMeansThatItsMiddleOrMoreIsInTheFrame) {
   core::Random random(4);
   const sim::Task task = sim::loadTask("hard");
   const double half_fov = 0.5 * world().options.horizontal_fov_deg * M_PI / 180;

@@ -85,14 +85,14 @@ TEST_F(TrajectoryRecorderTest, TheSearchingExpertKnowsTheWayThatTheCameraHasCome
   const std::vector<sim::Instance>& instances = episode.setup().instances;
   using core::Action;
   using expert::PanDirection;
-  const std::vector<std::pair<Action, Heading>> moves = {
+  const std::vector<std::pair<Action, PanDirection>> moves = {
       {Action::kPanLeft, PanDirection::kStart}, {Action::kTiltUp, PanDirection::kLeft},
       {Action::kTiltUp, PanDirection::kLeft},   {Action::kPanRight, PanDirection::kNone},
       {Action::kIdle, PanDirection::kRight},    {Action::kPanLeft, PanDirection::kRight},
       {Action::kIdle, PanDirection::kLeft},     {Action::kCollect, PanDirection::kLeft},
       {Action::kIdle, PanDirection::kNone}};
   int searched = 0;
-  for (const auto& [action, heading] : moves) {
+  for (const auto& [action, pan_direction] : moves) {
     const sim::EpisodeState& state = episode.state();
     const TrajectoryStep& step = recorder.record(state, frameAt(state.step));
     EXPECT_EQ(recorder.panDirection(), pan_direction) << "step " << state.step;

@@ -59,7 +59,7 @@ TEST(Tint, ReddensWhereTheSaliencyIs) {
   EXPECT_EQ(image.rgb[last + 1], 100);
 }
 
-TEST(Tint, LeavesAPictureAloneThatNothingHangsOn) {
+TEST(Tint, LeavesAnImageAloneThatNothingHangsOn) {
   core::Image image(16, 16);
   std::fill(image.rgb.begin(), image.rgb.end(), 100);
   const std::vector<std::uint8_t> before = image.rgb;

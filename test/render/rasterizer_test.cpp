@@ -47,7 +47,7 @@ Color colorAt(const core::Image& image, int x, int y) {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-core::Image picture(const world::World& world, const Eigen::Isometry3d& camera, int size = kSize) {
+core::Image rendered(const world::World& world, const Eigen::Isometry3d& camera, int size = kSize) {
   Rasterizer rasterizer(world, size);
   core::Image image;
   rasterizer.render(camera, image);
@@ -88,12 +88,12 @@ world::FixedMesh plainQuad(std::uint32_t color, const Eigen::Vector3f& corner, c
   return world::fixedMesh(std::move(part));
 }
 
-/// Compares a picture of ramps with what the ray caster sees: the texture coordinates in pixels that are covered whole,
+/// Compares an image of ramps with what the ray caster sees: the texture coordinates in pixels that are covered whole,
 /// the background in those that are not covered, a mixture in the others.
 /// @return the number of pixels covered whole
 int expectRampsAsRayCast(const world::World& world, const Eigen::Isometry3d& camera) {
-  const core::Image image = picture(world, camera);
-  const Color background = colorAt(picture(world::World{}, camera), 0, 0);
+  const core::Image image = rendered(world, camera);
+  const Color background = colorAt(rendered(world::World{}, camera), 0, 0);
   const RayCaster caster(world, kSize);
   int whole = 0, doubtful = 0;
   for (int y = 0; y < kSize; ++y) {
@@ -136,8 +136,8 @@ TEST(Rasterizer, PointsLandWhereThePinholePutsThem) {
     const float edge = 0.02f * point.x();
     world.kitchen.push_back(
         plainQuad(world::rgb(255, 0, 0), point + Eigen::Vector3f(0, edge, edge), {0, -2 * edge, 0}, {0, 0, -2 * edge}));
-    const core::Image image = picture(world, kAhead);
-    const Color background = colorAt(picture(world::World{}, kAhead), 0, 0);
+    const core::Image image = rendered(world, kAhead);
+    const Color background = colorAt(rendered(world::World{}, kAhead), 0, 0);
     Eigen::Vector2d sum(0, 0);
     double weights = 0;
     for (int y = 0; y < kSize; ++y) {
@@ -169,7 +169,7 @@ TEST(Rasterizer, AQuadThatPassesBehindTheCameraIsCutAtTheNearPlane) {
   EXPECT_GT(expectRampsAsRayCast(world, world::lookAlong({0, 0, 1}, {1, 0.4, -0.6})), 8000);
 }
 
-TEST(Rasterizer, AQuadFarBeyondThePictureIsCutAtTheGuardBand) {
+TEST(Rasterizer, AQuadFarBeyondTheImageIsCutAtTheGuardBand) {
   world::World world{};
   world.kitchen.push_back(rampQuad({0.1f, 40.f, 50.f}, {0, -90.f, 0}, {0.02f, 0, -80.f}));
   EXPECT_EQ(expectRampsAsRayCast(world, world::lookAlong({0, 0, 1}, {1, 0, 0})), kSize * kSize);
@@ -180,7 +180,7 @@ TEST(Rasterizer, TheNearerSurfaceHidesTheFartherEvenWhereTheyPierce) {
   world.kitchen.push_back(plainQuad(world::rgb(220, 0, 0), {1.f, 0.8f, 1.5f}, {0.8f, -1.6f, 0}, {0, 0, -1.f}));
   world.kitchen.push_back(plainQuad(world::rgb(0, 220, 0), {1.8f, 0.8f, 1.5f}, {-0.8f, -1.6f, 0}, {0, 0, -1.f}));
   world.kitchen.push_back(plainQuad(world::rgb(0, 0, 220), {1.5f, 0.8f, 1.2f}, {0, -1.6f, 0}, {-0.6f, 0, -0.4f}));
-  const core::Image image = picture(world, kAhead);
+  const core::Image image = rendered(world, kAhead);
   const RayCaster caster(world, kSize);
   int compared = 0, wrong = 0, seen_of[3] = {0, 0, 0};
   for (int y = 0; y < kSize; ++y) {
@@ -206,7 +206,7 @@ TEST(Rasterizer, TheNearerSurfaceHidesTheFartherEvenWhereTheyPierce) {
 TEST(Rasterizer, BackFacesAreNotDrawn) {
   world::World world{};
   world.kitchen.push_back(plainQuad(world::rgb(255, 0, 0), {1.f, -0.5f, 1.5f}, {0, 1.f, 0}, {0, 0, -1.f}));
-  EXPECT_TRUE(picture(world, kAhead).rgb == picture(world::World{}, kAhead).rgb);
+  EXPECT_TRUE(rendered(world, kAhead).rgb == rendered(world::World{}, kAhead).rgb);
 }
 
 TEST(Rasterizer, NoSeamsBetweenTheTrianglesOfASurface) {
@@ -228,7 +228,7 @@ TEST(Rasterizer, NoSeamsBetweenTheTrianglesOfASurface) {
     }
     for (const double pan : {-0.2, 0.0, 0.13}) {
       const Eigen::Isometry3d camera = world::lookAlong({0, 0.01, 1.03}, {1, pan, -0.1});
-      EXPECT_TRUE(picture(cut, camera).rgb == picture(whole, camera).rgb) << cells << " cells, pan " << pan;
+      EXPECT_TRUE(rendered(cut, camera).rgb == rendered(whole, camera).rgb) << cells << " cells, pan " << pan;
     }
   }
 }
@@ -284,32 +284,31 @@ TEST(Rasterizer, DrawsTheObjectsThatWereSetLast) {
   EXPECT_TRUE(drawn(used, {}) == fresh({}));
 }
 
-/// A picture for each of some steps: the camera moves, and halfway an object goes.
+/// An image for each of some steps: the camera moves, and halfway an object goes.
 std::vector<std::vector<std::uint8_t>> episode(const world::World& world) {
   Rasterizer rasterizer(world, kSize);
   core::Image image;
-  std::vector<std::vector<std::uint8_t>> pictures;
+  std::vector<std::vector<std::uint8_t>> images;
   for (int step = 0; step < 24; ++step) {
     std::vector<world::ObjectPose> objects = world::handmadeScene(8, 4);
     if (step >= 12) objects.erase(objects.begin() + 2);
     rasterizer.setObjects(objects);
     rasterizer.render(world::lookAlong({0, 0, 1.35}, {1, 0.05 * (step - 12), -0.4}), image);
-    pictures.push_back(image.rgb);
+    images.push_back(image.rgb);
   }
-  return pictures;
+  return images;
 }
 
 TEST(Rasterizer, EveryInstanceAndThreadDrawsTheSameBits) {
   auto world = world::handmadeKitchen(4, 6);
   const auto expected = episode(*world);
   EXPECT_TRUE(episode(*world) == expected);
-  std::vector<std::vector<std::vector<std::uint8_t>>> pictures(3);
+  std::vector<std::vector<std::vector<std::uint8_t>>> images(3);
   std::vector<std::thread> threads;
-  for (auto& of_thread : pictures) threads.emplace_back([&] { of_thread = episode(*world); });
+  for (auto& of_thread : images) threads.emplace_back([&] { of_thread = episode(*world); });
   for (std::thread& thread : threads) thread.join();
-  for (const auto& of_thread : pictures) EXPECT_TRUE(of_thread == expected);
-  EXPECT_TRUE(episode(*world::handmadeKitchen(4, 6)) == expected)
-      << "the picture depends on the world::World's address";
+  for (const auto& of_thread : images) EXPECT_TRUE(of_thread == expected);
+  EXPECT_TRUE(episode(*world::handmadeKitchen(4, 6)) == expected) << "the image depends on the world::World's address";
 }
 
 TEST(Rasterizer, WhatWasDrawnBeforeLeavesNoTrace) {
@@ -350,7 +349,7 @@ TEST(Rasterizer, ImageSizesOutOfRangeAreNamed) {
       EXPECT_NE(std::string(error.what()).find("image_size: '" + std::to_string(size) + "'"), std::string::npos);
     }
   }
-  EXPECT_EQ(picture(world, kAhead, 16).rgb.size(), 3u * 16 * 16);
+  EXPECT_EQ(rendered(world, kAhead, 16).rgb.size(), 3u * 16 * 16);
 }
 
 }  // namespace

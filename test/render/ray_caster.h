@@ -33,7 +33,7 @@ class RayCaster {
                            0.5 * image_size_ + focal_length_ * p.y() / p.z());
   }
 
-  /// The nearest front face beyond the near plane at a place of the picture [px].
+  /// The nearest front face beyond the near plane at a place of the image [px].
   std::optional<Hit> cast(const Eigen::Isometry3d& world_from_camera, double x, double y) const {
     const Eigen::Vector3d ray =
         world_from_camera.linear() *

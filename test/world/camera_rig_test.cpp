@@ -26,7 +26,7 @@ Eigen::Vector3d forward(const CameraRig& rig, Orientation o) { return rig.worldF
 /// The rig, with tilt 0 within its limits.
 CameraRig levelRig() { return load(replaced(kRigUrdf, R"(lower="0.209440")", R"(lower="0")")); }
 
-TEST(CameraRig, LooksAlongXAtZeroWithAnUprightPicture) {
+TEST(CameraRig, LooksAlongXAtZeroWithAnUprightImage) {
   const Eigen::Isometry3d pose = levelRig().worldFromCamera({0, 0});
   EXPECT_TRUE(pose.translation().isApprox(Eigen::Vector3d(0, 0, 1.35), 1e-9));
   Eigen::Matrix3d expected;  // columns: right, down, forward

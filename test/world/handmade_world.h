@@ -90,7 +90,7 @@ inline FixedMesh fixedMesh(MeshPart part) {
   return {"fixed", std::move(mesh), Eigen::Isometry3d::Identity()};
 }
 
-/// Camera at `eye`, looking along `forward`, its picture upright.
+/// Camera at `eye`, looking along `forward`, its image upright.
 inline Eigen::Isometry3d lookAlong(const Eigen::Vector3d& eye, const Eigen::Vector3d& forward) {
   const Eigen::Vector3d z = forward.normalized();
   const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();

@@ -35,7 +35,7 @@ const std::vector<Model>& kitchen() {
   return models;
 }
 
-// Pictures are compared as pixels: other versions of zlib pack the same ones into other bytes.
+// Images are compared as pixels: other versions of zlib pack the same ones into other bytes.
 void expectShipped(const std::string& name, const std::vector<Model>& models) {
   const world::TestFolder made;
   const std::string shipped = core::shareFolder() + "/meshes/" + name;
@@ -46,10 +46,10 @@ void expectShipped(const std::string& name, const std::vector<Model>& models) {
       const std::string file = "/" + model.name + suffix;
       EXPECT_TRUE(core::readFile(made.path() + file) == core::readFile(shipped + file)) << shipped + file;
     }
-    const std::string picture = "/" + model.name + ".png";
-    const cv::Mat now = cv::imread(made.path() + picture), then = cv::imread(shipped + picture);
-    ASSERT_EQ(now.size(), then.size()) << shipped + picture;
-    EXPECT_EQ(cv::norm(now, then, cv::NORM_INF), 0) << shipped + picture;
+    const std::string image = "/" + model.name + ".png";
+    const cv::Mat now = cv::imread(made.path() + image), then = cv::imread(shipped + image);
+    ASSERT_EQ(now.size(), then.size()) << shipped + image;
+    EXPECT_EQ(cv::norm(now, then, cv::NORM_INF), 0) << shipped + image;
     files += 3;
   }
   const std::filesystem::directory_iterator listing(shipped);
@@ -93,7 +93,7 @@ TEST(ShippedMeshesTest, ObjectSetListsEveryObjectInOrder) {
   }
 }
 
-// Fails when a shape has too little detail, or more than a 128-pixel picture can show.
+// Fails when a shape has too little detail, or more than a 128-pixel image can show.
 TEST(ShippedMeshesTest, ObjectsHaveBetween500And2000Triangles) {
   for (const Model& model : objects()) {
     EXPECT_GE(model.mesh.size(), 500u) << model.name;

@@ -20,10 +20,10 @@ class TexturedMeshTest : public testing::Test {
   std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
 
   /// Red in the upper left quarter, else blue.
-  void writePicture(const std::string& name, int width, int height) const {
-    cv::Mat picture(height, width, CV_8UC3, cv::Scalar(200, 0, 0));
-    picture(cv::Rect(0, 0, width / 2, height / 2)) = cv::Scalar(0, 0, 200);
-    ASSERT_TRUE(cv::imwrite(folder_.path() + "/" + name, picture));
+  void writeImage(const std::string& name, int width, int height) const {
+    cv::Mat image(height, width, CV_8UC3, cv::Scalar(200, 0, 0));
+    image(cv::Rect(0, 0, width / 2, height / 2)) = cv::Scalar(0, 0, 200);
+    ASSERT_TRUE(cv::imwrite(folder_.path() + "/" + name, image));
   }
 
   static std::string errorOf(const std::string& path) {
@@ -55,7 +55,7 @@ std::string ballObj(int segments, int rings) {
 }
 
 TEST_F(TexturedMeshTest, ReadsTriangledPolygonsWithTheirTexture) {
-  writePicture("cloth.png", 64, 64);
+  writeImage("cloth.png", 64, 64);
   write("square.mtl", "newmtl cloth\nKd 1 1 1\nKs 0.4 0.4 0.4\nNs 60\nmap_Kd cloth.png\n");
   const TexturedMesh mesh = loadTexturedMesh(write("square.obj", kSquare), {1, 1, 0.5}, kManyTriangles);
   ASSERT_EQ(mesh.parts.size(), 1u);
@@ -69,7 +69,7 @@ TEST_F(TexturedMeshTest, ReadsTriangledPolygonsWithTheirTexture) {
   EXPECT_EQ(part.texture.texels[60 * 64 + 5], rgb(0, 0, 200));
   for (const Vertex& vertex : part.vertices) {
     EXPECT_TRUE(vertex.normal.isApprox(-Eigen::Vector3f::UnitY())) << "not outwards";
-    // v grows downwards: the top of the square has the picture's first row.
+    // v grows downwards: the top of the square has the image's first row.
     EXPECT_FLOAT_EQ(vertex.uv.y(), vertex.position.z() > 0.1f ? 0.f : 1.f);
     EXPECT_FLOAT_EQ(vertex.uv.x(), vertex.position.x() / 2);
   }
@@ -80,7 +80,7 @@ TEST_F(TexturedMeshTest, TexturesBecomeSquaresOfAPowerOfTwo) {
   const std::string path = write("square.obj", kSquare);
   const struct { int width, height, size; } cases[] = {{100, 60, 128}, {2048, 1024, 512}, {3, 3, 4}, {256, 256, 256}};
   for (const auto& c : cases) {
-    writePicture("cloth.png", c.width, c.height);
+    writeImage("cloth.png", c.width, c.height);
     const Texture texture = loadTexturedMesh(path, kUnscaled, kManyTriangles).parts[0].texture;
     EXPECT_EQ(texture.size, c.size);
     EXPECT_EQ(texture.texels.size(), static_cast<std::size_t>(c.size) * c.size);
@@ -178,7 +178,7 @@ TEST_F(TexturedMeshTest, ErrorsNameThePathAndTheFault) {
   EXPECT_NE(errorOf(square).find("nowhere.png"), std::string::npos);
 
   write("square.mtl", "newmtl cloth\nmap_Kd square.obj\n");
-  EXPECT_NE(errorOf(square).find("picture"), std::string::npos) << errorOf(square);
+  EXPECT_NE(errorOf(square).find("image"), std::string::npos) << errorOf(square);
 
   const std::string infinite = write("infinite.obj", "v 0 0 0\nv 1 0 0\nv 1 1e39 0\nf 1 2 3\n");
   EXPECT_NE(errorOf(infinite).find(infinite + ": vertex "), std::string::npos) << errorOf(infinite);

@@ -85,7 +85,7 @@ class TrajectoryRecorder {
   const Trajectory& trajectory() const { return trajectory_; }
 
   /// The pan direction over the policy's frames at the last recorded state.
-  expert::PanDirection pan_direction() const;
+  expert::PanDirection panDirection() const;
 
   /// Returns the trajectory. The recorder is empty afterwards.
   Trajectory finish(const sim::Score& score);

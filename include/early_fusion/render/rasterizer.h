@@ -17,7 +17,7 @@ namespace early_fusion::render {
 /// One thread at a time may use a rasterizer. Several rasterizers may share a World.
 class Rasterizer {
  public:
-  /// `world` must outlive the rasterizer. @param image_size edge of the square picture [px], see core::addImageSize().
+  /// `world` must outlive the rasterizer. @param image_size edge of the square image [px], see core::addImageSize().
   /// @throws Error otherwise.
   Rasterizer(const world::World& world, int image_size);
   ~Rasterizer();

@@ -172,9 +172,8 @@ void PolicyNode::publishAnnotated(const core::Image& frame, const std_msgs::Head
       model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, frame.width);
   annotation.request = request.items;
   annotation.action = answer_.name;
-  const core::Image picture =
-      options_.saliency_grid > 0 ? policy_.lastImageWithSaliency(options_.saliency_grid) : frame;
-  annotated_publisher_.publish(imageMessage(model::annotate(picture, annotation, options_.annotated_scale), header));
+  const core::Image tinted = options_.saliency_grid > 0 ? policy_.lastImageWithSaliency(options_.saliency_grid) : frame;
+  annotated_publisher_.publish(imageMessage(model::annotate(tinted, annotation, options_.annotated_scale), header));
 }
 
 void PolicyNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

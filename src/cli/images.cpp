@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "images.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -29,7 +29,7 @@ core::Image sheet(const std::vector<core::Image>& images) {
 }
 
 core::Image draw(render::Rasterizer& rasterizer, const world::World& world, const PlayedStep& step,
-                 const PictureStyle& style) {
+                 const ImageStyle& style) {
   core::Image image;
   rasterizer.setObjects(sim::presentObjects(world, step.instances, step.state.present));
   rasterizer.render(world.rig.worldFromCamera(step.state.orientation), image);
@@ -64,12 +64,12 @@ world::Orientation aimAt(const world::World& world, const Eigen::Vector3d& point
 
 }  // namespace
 
-core::Image drawStep(const world::World& world, const PlayedStep& step, const PictureStyle& style) {
+core::Image drawStep(const world::World& world, const PlayedStep& step, const ImageStyle& style) {
   render::Rasterizer rasterizer(world, style.size);
   return draw(rasterizer, world, step, style);
 }
 
-core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style) {
+core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const ImageStyle& style) {
   constexpr int kSpread = 5;  // steps between two images where nothing is taken
   render::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
@@ -81,7 +81,7 @@ core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>
   return sheet(images);
 }
 
-core::Image drawObjects(const world::World& world, const PictureStyle& style) {
+core::Image drawObjects(const world::World& world, const ImageStyle& style) {
   render::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
   for (int item = 0; item < world.objects.size(); ++item) {

@@ -16,19 +16,19 @@ struct PlayedStep {
   core::Action expert_action;
 };
 
-struct PictureStyle {
+struct ImageStyle {
   int size;       ///< edge of each drawn image [px]
   int scale;      ///< each is enlarged so many times
   bool annotate;  ///< crosshair circle, request and action
 };
 
-core::Image drawStep(const world::World& world, const PlayedStep& step, const PictureStyle& style);
+core::Image drawStep(const world::World& world, const PlayedStep& step, const ImageStyle& style);
 
 /// A sheet of frames, row by row: the first step, the last step, all steps that took an object, and steps at regular
 /// intervals between.
-core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const PictureStyle& style);
+core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const ImageStyle& style);
 
 /// A sheet with each object of the set alone on the counter and its name below.
-core::Image drawObjects(const world::World& world, const PictureStyle& style);
+core::Image drawObjects(const world::World& world, const ImageStyle& style);
 
 }  // namespace early_fusion::cli
