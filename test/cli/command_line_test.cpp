@@ -57,7 +57,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
       {"inspect", {"weights", "--task", "--world"}},
-      {"urdf", {"camera", "kitchen", "--world"}},
+      {"urdf", {"part", "--world"}},
       {"train", {"--task"}}};
   for (const auto& [command, arguments] : commands) {
     EXPECT_EQ(run("--help"), 0);

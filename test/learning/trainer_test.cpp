@@ -227,7 +227,7 @@ TEST(Trainer, ACheckpointOfOtherItemsIsRefused) {
   EXPECT_EQ(restoreError(good), "accepted");
   std::vector<std::string> items = tinyVocabulary().names();
   items.push_back("teapot");
-  EXPECT_NE(restoreError(good, core::Vocabulary(items)).find("broken.safetensors: its policy is another"),
+  EXPECT_NE(restoreError(good, core::Vocabulary(items)).find("broken.safetensors: its policy has other items"),
             std::string::npos);
   std::swap(items[0], items.back());
   items.pop_back();

@@ -111,6 +111,7 @@ TEST(NetworkPolicy, InBfloat16PredictsAndLearnsAlmostTheSame) {
 }
 
 TEST(NetworkPolicy, GradientsAreTheSlopeOfTheLoss) {
+  constexpr float kMaxStep = 1e-3f;  // a longer one passes too many kinks of max-pooling and ReLU
   for (PolicyOptions options : everySmallNetwork()) {
     if (options.precision != "f32") continue;  // bfloat16 rounds the slope away
     SCOPED_TRACE(options.kind + ", fusion block " + std::to_string(options.fusion_block));
@@ -124,16 +125,19 @@ TEST(NetworkPolicy, GradientsAreTheSlopeOfTheLoss) {
       policy->parametersChanged();
       return policy->lossAndGradients(batch.samples, 4);
     };
-    // Of each tensor by itself: a gradient that is lost leaves the slope along the others' what it was.
+    const auto slopeAlong = [&](const Eigen::VectorXf& direction) {
+      const float norm = direction.norm(), step = std::min(1e-4f / norm, kMaxStep);
+      const Eigen::VectorXf way = step / norm * direction;
+      return (lossAt(values + way) - lossAt(values - way)) / (2 * step) / norm;
+    };
+    EXPECT_NEAR(slopeAlong(gradients), 1, 0.02);
+    // Of each tensor by itself, too: a gradient that is lost leaves the slope along the others' as it was. Kinks of
+    // max-pooling and ReLU make it less exact.
     for (const nn::TensorSlice& slice : policy->parameters().parameterSlices()) {
       Eigen::VectorXf direction = Eigen::VectorXf::Zero(values.size());
       direction.segment(slice.offset, slice.size) = gradients.segment(slice.offset, slice.size);
-      const float norm = direction.norm();
-      ASSERT_GT(norm, 1e-4f) << slice.name;
-      direction /= norm;
-      const float step = 2e-4f / norm;
-      const double slope = (lossAt(values + step * direction) - lossAt(values - step * direction)) / (2 * step);
-      EXPECT_NEAR(slope / norm, 1, 0.02) << slice.name;
+      ASSERT_GT(direction.norm(), 1e-4f) << slice.name;
+      EXPECT_NEAR(slopeAlong(direction), 1, 0.25) << slice.name;
     }
   }
 }

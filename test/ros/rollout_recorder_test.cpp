@@ -40,7 +40,9 @@ class RolloutRecorderTest : public testing::Test {
     std::vector<Messages> steps;
     std::string previous;
     while (!episode.finished()) {
-      const core::Action action = blunder && steps.empty() ? core::Action::kTiltUp : expert::decide(episode).action;
+      const core::Action right = expert::decide(episode).action;
+      const core::Action wrong = right == core::Action::kTiltUp ? core::Action::kTiltDown : core::Action::kTiltUp;
+      const core::Action action = blunder && steps.empty() ? wrong : right;
       steps.push_back(step(episode, number, previous, action));
       previous = core::actionName(action);
       episode.step(action);

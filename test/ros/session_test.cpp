@@ -184,7 +184,7 @@ TEST_F(SessionTest, ARunFolderIsNotOverwrittenUnlessResumed) {
   const std::string before = weights("reference");
   const auto refused = launchTraining("reference");
   ASSERT_TRUE(refused->ends(30)) << refused->output();
-  EXPECT_NE(refused->output().find("holds a training session already"), std::string::npos) << refused->output();
+  EXPECT_NE(refused->output().find("holds a training session; resume it"), std::string::npos) << refused->output();
   const auto resumed = launchTraining("reference", {"resume:=true"});
   ASSERT_TRUE(resumed->ends(kSessionSec)) << resumed->output();
   EXPECT_TRUE(weights("reference") == before);

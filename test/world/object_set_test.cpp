@@ -50,14 +50,14 @@ TEST(ObjectSet, NamesItsItemsInTheOrderOfTheFile) {
   EXPECT_EQ(load(kObjectsYaml).vocabulary().names(), (std::vector<std::string>{"box", "can", "cube", "plate"}));
 }
 
-TEST(ObjectSet, ReducesHullsToAtMostAHundredCorners) {
+TEST(ObjectSet, HullsHaveTheirMeshesCornersAndAreFewEnoughToBeQuick) {
   const ObjectSet set = load(kObjectsYaml);
   EXPECT_EQ(set[0].hull.size(), 8u);
   EXPECT_EQ(set[1].hull.size(), 32u);
   const ObjectSet shipped = ObjectSet::load(core::shareFolder() + "/config/objects.yaml", 2000);
   EXPECT_EQ(shipped.size(), 16);
   for (int i = 0; i < shipped.size(); ++i) {
-    EXPECT_LE(shipped[i].hull.size(), 100u) << shipped[i].name;
+    EXPECT_LE(shipped[i].hull.size(), 300u) << shipped[i].name;
     EXPECT_GE(shipped[i].hull.size(), 8u) << shipped[i].name;
   }
 }
