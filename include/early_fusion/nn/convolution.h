@@ -17,6 +17,10 @@ struct ConvolutionShape {
 /// Whether the processor computes in bfloat16 natively (avx512_bf16).
 bool processorHasBfloat16();
 
+/// Whether it also computes faster in bfloat16 than in f32: with Intel's AMX or AMD's AVX-512. Intel's AVX-512 alone
+/// multiplies both at the same rate, so bfloat16 only adds conversions where a virtual machine hides AMX.
+bool processorPrefersBfloat16();
+
 /// A 3x3 convolution of one image with stride 1, one pixel of zero padding and no bias. Maps are (H,W,C), except those
 /// of predict().
 ///
