@@ -20,8 +20,7 @@ TYPED_TEST(FrameStack, LaysTheNewestFrameAndDifferencesSideBySideExactly) {
       for (int i = 0; i < 3 * pixels; ++i) frames[f][i] = static_cast<std::uint8_t>(7 * i + 50 * f + i / 256);
     }
     for (const bool black : {false, true}) {
-      const core::FrameStack stack = {frames[0].data(), black ? nullptr : frames[1].data(),
-                                                   frames[2].data()};
+      const core::FrameStack stack = {frames[0].data(), black ? nullptr : frames[1].data(), frames[2].data()};
       std::vector<TypeParam> x(pixels * kImageChannels + 1, fromFloat<TypeParam>(-200.f));
       stackFrames(stack, 0, pixels, x.data());
       for (int p = 0; p < pixels; ++p) {
