@@ -128,6 +128,10 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   ASSERT_EQ(run("render --image episode --size 32 --out " + path("e.png")), 0) << errors_;
   EXPECT_EQ(cv::imread(path("e.png")).cols, 128);
   EXPECT_GE(cv::imread(path("e.png")).rows, 96);  // every fifth of 48 steps at least, four in a row
+  ASSERT_EQ(run("render --image steps --size 32 --out " + path("steps")), 0) << errors_;
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("steps")), fs::directory_iterator()), 48);
+  ASSERT_EQ(run("render --step 47 --size 32 --out " + path("last.png")), 0) << errors_;
+  EXPECT_EQ(core::readFile(path("steps/step_47.png")), core::readFile(path("last.png")));
 }
 
 TEST_F(CommandLine, PrintsTheUrdfsOfAWorld) {
@@ -167,6 +171,7 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
       {"render --step 48 --out " + path("x.png"), "--step"},
+      {"render --image steps --out -", "--image steps needs a folder"},
       {"render --size 20 --out " + path("x.png"), "size: '20' is not a multiple of 16"},
       {"render --size 1008 --out " + path("x.png"),
        "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
