@@ -10,6 +10,7 @@ namespace early_fusion::cli {
 // One function a subcommand: it declares its flags and what to do when it is chosen.
 void addTrain(CLI::App& app);
 void addEvaluate(CLI::App& app);
+void addDifficulty(CLI::App& app);
 void addRender(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);

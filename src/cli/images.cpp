@@ -64,21 +64,23 @@ world::Orientation aimAt(const world::World& world, const Eigen::Vector3d& point
 
 }  // namespace
 
-core::Image drawStep(const world::World& world, const PlayedStep& step, const ImageStyle& style) {
+std::vector<core::Image> drawSteps(const world::World& world, const std::vector<PlayedStep>& steps,
+                                   const ImageStyle& style) {
   render::Rasterizer rasterizer(world, style.size);
-  return draw(rasterizer, world, step, style);
+  std::vector<core::Image> images;
+  for (const PlayedStep& step : steps) images.push_back(draw(rasterizer, world, step, style));
+  return images;
 }
 
 core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const ImageStyle& style) {
   constexpr int kSpread = 5;  // steps between two images where nothing is taken
-  render::Rasterizer rasterizer(world, style.size);
-  std::vector<core::Image> images;
+  std::vector<PlayedStep> shown;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool last = i + 1 == steps.size();
     const bool takes = !last && steps[i + 1].state.present != steps[i].state.present;
-    if (takes || last || i % kSpread == 0) images.push_back(draw(rasterizer, world, steps[i], style));
+    if (takes || last || i % kSpread == 0) shown.push_back(steps[i]);
   }
-  return sheet(images);
+  return sheet(drawSteps(world, shown, style));
 }
 
 core::Image drawObjects(const world::World& world, const ImageStyle& style) {

@@ -22,7 +22,9 @@ struct ImageStyle {
   bool annotate;  ///< crosshair circle, request and action
 };
 
-core::Image drawStep(const world::World& world, const PlayedStep& step, const ImageStyle& style);
+/// An image of each step.
+std::vector<core::Image> drawSteps(const world::World& world, const std::vector<PlayedStep>& steps,
+                                   const ImageStyle& style);
 
 /// A sheet of frames, row by row: the first step, the last step, all steps that took an object, and steps at regular
 /// intervals between.

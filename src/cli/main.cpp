@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   early_fusion::cli::addTrain(app);
   early_fusion::cli::addEvaluate(app);
+  early_fusion::cli::addDifficulty(app);
   early_fusion::cli::addRender(app);
   early_fusion::cli::addInspect(app);
   early_fusion::cli::addUrdf(app);

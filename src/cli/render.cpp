@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -31,8 +32,8 @@ struct RenderOptions {
 
 core::OptionSet RenderOptions::options() {
   core::OptionSet set("render");
-  set.addChoice("image", image, {"step", "episode", "objects"},
-                "one step, a sheet of the episode, or a sheet of all objects");
+  set.addChoice("image", image, {"step", "steps", "episode", "objects"},
+                "one step, all steps in a file each, a sheet of the episode, or a sheet of all objects");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "with --episode, which episode");
   set.add("episode", episode, "number of the episode");
@@ -42,7 +43,7 @@ core::OptionSet RenderOptions::options() {
   set.add("scale", scale, 1, 16, "", "enlarge each image so many times");
   set.add("annotate", annotate, "add the crosshair circle, the request and the action");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
-  set.add("out", out, "the PNG file to write");
+  set.add("out", out, "the PNG file to write; with --image steps, the folder for step_00.png, step_01.png and so on");
   return set;
 }
 
@@ -51,8 +52,18 @@ void writePng(const std::string& file, const core::Image& image) {
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<std::uint8_t> png;
-  cv::imencode(".png", bgr, png);
+  cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
   writeTo(file, std::string(png.begin(), png.end()));
+}
+
+/// Writes the steps to `folder`, numbered so that their names are in order.
+void writeSteps(const std::string& folder, const std::vector<core::Image>& steps) {
+  if (folder == "-") throw core::Error("--out: '-' is standard output, but --image steps needs a folder");
+  const std::size_t digits = std::max<std::size_t>(2, std::to_string(steps.size() - 1).size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::string number = std::to_string(i);
+    writePng(folder + "/step_" + std::string(digits - number.size(), '0') + number + ".png", steps[i]);
+  }
 }
 
 /// Plays the whole episode and stores the state of each step.
@@ -82,8 +93,10 @@ void render(const RenderOptions& options) {
   const std::vector<PlayedStep> played = play(options, *world, task);
   if (options.image == "episode") {
     writePng(options.out, drawEpisode(*world, played, style));
+  } else if (options.image == "steps") {
+    writeSteps(options.out, drawSteps(*world, played, style));
   } else {
-    writePng(options.out, drawStep(*world, played[options.step], style));
+    writePng(options.out, drawSteps(*world, {played[options.step]}, style).front());
   }
 }
 
@@ -92,7 +105,7 @@ void render(const RenderOptions& options) {
 void addRender(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "render",
-      "Draw what the camera sees as a PNG file.\n"
+      "Draw what the camera sees as PNG files.\n"
       "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
   const auto given = std::make_shared<core::GivenOptions>();
   addOptionFlags(*command, RenderOptions().options(), *given);

@@ -53,6 +53,7 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
   const std::pair<std::string, std::vector<std::string>> commands[] = {
       {"evaluate", {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--world"}},
+      {"difficulty", {"--task", "--episodes", "--seed", "--world"}},
       {"render",
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
@@ -75,7 +76,8 @@ TEST_F(CommandLine, HelpOfTrainListsEveryOptionWithItsRange) {
     std::string argument = "--" + option.name;
     std::replace(argument.begin(), argument.end(), '_', '-');
     EXPECT_NE(helpOn(argument), "") << argument;
-    if (!option.isSwitch()) EXPECT_NE(helpOn(argument).find(option.range), std::string::npos) << helpOn(argument);
+    if (option.isSwitch()) continue;
+    EXPECT_NE(helpOn(argument).find(option.range), std::string::npos) << helpOn(argument);
   }
 }
 
@@ -92,6 +94,20 @@ TEST_F(CommandLine, EvaluationWritesMeansAndEveryEpisodeAsJsonAndNothingElse) {
     for (const auto& episode : json["per_episode"]) sum += episode[key].get<double>();
     EXPECT_NEAR(json[key].get<double>(), sum / 3, 1e-12) << key;
   }
+}
+
+TEST_F(CommandLine, DifficultyIsARowOfATableForEachTask) {
+  core::writeFileAtomically(path("two.yaml"), "{name: two, instances: 2, requested: 2, steps: 1}");
+  ASSERT_EQ(run("difficulty --task simple " + path("two.yaml") + " --episodes 20 --seed 4"), 0) << errors_;
+  std::istringstream lines(output_);
+  std::vector<std::string> table;
+  for (std::string line; std::getline(lines, line);) table.push_back(line);
+  ASSERT_EQ(table.size(), 6u) << output_;
+  EXPECT_EQ(table[0], "20 episodes of each task, seed 4");
+  for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(std::count(table[i].begin(), table[i].end(), '|'), 8);
+  EXPECT_EQ(table[4].rfind("| simple | ", 0), 0u) << table[4];
+  EXPECT_EQ(table[5].rfind("| two | 0.0", 0), 0u) << table[5];  // one step is hardly ever enough
+  EXPECT_EQ(errors_, "") << "no progress where standard error is no terminal";
 }
 
 TEST_F(CommandLine, TheTraceHoldsEveryStep) {
@@ -112,6 +128,10 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   ASSERT_EQ(run("render --image episode --size 32 --out " + path("e.png")), 0) << errors_;
   EXPECT_EQ(cv::imread(path("e.png")).cols, 128);
   EXPECT_GE(cv::imread(path("e.png")).rows, 96);  // every fifth of 48 steps at least, four in a row
+  ASSERT_EQ(run("render --image steps --size 32 --out " + path("steps")), 0) << errors_;
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("steps")), fs::directory_iterator()), 48);
+  ASSERT_EQ(run("render --step 47 --size 32 --out " + path("last.png")), 0) << errors_;
+  EXPECT_EQ(core::readFile(path("steps/step_47.png")), core::readFile(path("last.png")));
 }
 
 TEST_F(CommandLine, PrintsTheUrdfsOfAWorld) {
@@ -151,11 +171,15 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
       {"render --step 48 --out " + path("x.png"), "--step"},
+      {"render --image steps --out -", "--image steps needs a folder"},
       {"render --size 20 --out " + path("x.png"), "size: '20' is not a multiple of 16"},
       {"render --size 1008 --out " + path("x.png"),
        "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
       {"evaluate --policy expert --episodes 0", "episodes"},
+      {"difficulty --task simple harder", "harder"},
+      {"difficulty --episodes 0", "episodes"},
+      {"difficulty --world /no/such/world.yaml", "/no/such/world.yaml"},
       {"urdf camera --world /no/such/world.yaml", "/no/such/world.yaml"},
       {"urdf robot", "camera"},
   };

@@ -1,3 +1,3 @@
-early_fusion_add_test(expert ceiling_test)
 early_fusion_add_test(expert greedy_expert_test)
 early_fusion_add_test(expert searching_expert_test)
+early_fusion_add_test(expert task_difficulty_test)

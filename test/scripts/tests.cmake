@@ -1,3 +1,7 @@
 add_test(NAME scripts_analyse_trace_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/analyse_trace_test.py
                  ${PROJECT_SOURCE_DIR} $<TARGET_FILE:${PROJECT_NAME}_cli>)
+add_test(NAME scripts_animate_episode_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/animate_episode_test.py
+                 ${PROJECT_SOURCE_DIR} $<TARGET_FILE:${PROJECT_NAME}_cli>)
+set_tests_properties(scripts_animate_episode_test PROPERTIES SKIP_RETURN_CODE 77)

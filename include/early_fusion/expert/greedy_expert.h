@@ -23,7 +23,7 @@ struct InstanceCost {
 
 struct Decision {
   core::Action action;              ///< the label: the first of `optimal` in decide()'s order
-  ActionSet optimal;                ///< all first actions of shortest ways to the nearest requested instances
+  ActionSet optimal;                ///< all optimal actions, see decide()
   std::vector<InstanceCost> costs;  ///< of all reachable instances of a requested item
 };
 
@@ -31,9 +31,16 @@ struct Decision {
 /// step.
 ///
 /// The steps to an instance are the minimum, over all orientations at which it is in the cone, of |pan steps| + |tilt
-/// steps| + one action for each nearer object in the cone + 1 to collect it. If several actions are equally good, the
-/// label is the first of COLLECT, REMOVE, PAN_LEFT, PAN_RIGHT, TILT_UP, TILT_DOWN, so it is a function of the state. If
-/// no requested instance can be reached, the label is IDLE.
+/// steps| + one action for each nearer object in the cone + 1 to collect it.
+///
+/// The optimal actions are COLLECT if the nearest object in the cone is requested, else all actions that lower the
+/// fewest steps to a requested instance by one. REMOVE can be among them before the camera has arrived: an object that
+/// is in front of the instance at the end of a shortest way may be removed earlier, at any orientation at which it is
+/// the nearest in the cone. Then the moves are optimal, too. To remove any other object is never optimal.
+///
+/// The label is the first optimal action of COLLECT, REMOVE, PAN_LEFT, PAN_RIGHT, TILT_UP, TILT_DOWN, so it is a
+/// function of the state. The expert thus removes an occluder at the first orientation of its way at which it can. If
+/// no requested instance can be reached, the label is IDLE, and only IDLE is optimal.
 Decision decide(const sim::ConeTable& cone, const std::vector<sim::Instance>& instances, sim::InstanceMask present,
                 world::Orientation orientation, const core::Request& request);
 
@@ -44,7 +51,7 @@ sim::InstanceMask wantedInstances(const std::vector<sim::Instance>& instances, s
 /// An expert's answer for one state. It needs no allocation, because training asks for several at each frame.
 struct Label {
   core::Action action = core::Action::kIdle;
-  ActionSet optimal = 0;  ///< all equally good actions, `action` among them
+  ActionSet optimal = 0;  ///< all optimal actions, `action` among them; the searching expert's search has only one
   int steps = 0;          ///< until an instance is collected; 0 if none is wanted or the number is unknown
 };
 
