@@ -22,7 +22,7 @@ core::OptionSet PolicyOptions::options() {
   set.add("dropout", dropout, 0.0, 0.95, "", "share of the hidden layer's units that are dropped in training");
   core::addImageSize(set, "image_size", image_size, "edge of the square frames that the policy sees");
   set.addChoice("precision", precision, precisionNames(),
-                "what convolutions compute in; auto is bf16 where the processor has it natively");
+                "what convolutions compute in; auto: bf16 where the processor computes faster in it");
   return set;
 }
 

@@ -210,7 +210,7 @@ void BlockTrunk<T>::predict(int thread, const core::FrameStack& frames, const fl
 }
 
 bool usesBfloat16(const std::string& precision) {
-  return precision == "bf16" || (precision == "auto" && nn::processorHasBfloat16());
+  return precision == "bf16" || (precision == "auto" && nn::processorPrefersBfloat16());
 }
 
 }  // namespace

@@ -73,6 +73,19 @@ class Call {
 // With fewer the library's direct kernels are as fast as Winograd's.
 constexpr int kFewestWinogradChannels = 64;
 
+bool processorHas(dnnl::cpu_isa isa) {
+  const int wanted = static_cast<int>(isa);
+  return (static_cast<int>(dnnl::get_effective_cpu_isa()) & wanted) == wanted;
+}
+
+bool processorIsAmds() {
+#if defined(__x86_64__)
+  return __builtin_cpu_is("amd");
+#else
+  return false;
+#endif
+}
+
 bool suitsWinograd(const ConvolutionShape& shape) {
   return std::min(shape.in_channels, shape.out_channels) >= kFewestWinogradChannels &&
          shape.in_channels % kLanes == 0 && shape.out_channels % kLanes == 0;
@@ -88,9 +101,10 @@ void reorder(dnnl::memory from, dnnl::memory to) {
 
 }  // namespace
 
-bool processorHasBfloat16() {
-  const int wanted = static_cast<int>(dnnl::cpu_isa::avx512_core_bf16);
-  return (static_cast<int>(dnnl::get_effective_cpu_isa()) & wanted) == wanted;
+bool processorHasBfloat16() { return processorHas(dnnl::cpu_isa::avx512_core_bf16); }
+
+bool processorPrefersBfloat16() {
+  return processorHas(dnnl::cpu_isa::avx512_core_amx) || (processorHasBfloat16() && processorIsAmds());
 }
 
 template <class T>

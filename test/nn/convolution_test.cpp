@@ -64,6 +64,8 @@ class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
   Numbers x, weights;
 };
 
+TEST(Processor, PrefersBfloat16OnlyWhereItHasIt) { EXPECT_TRUE(processorHasBfloat16() || !processorPrefersBfloat16()); }
+
 TEST_P(ConvolutionTest, PredictsByWinogradWhereThereAreManyChannels) {
   if (!processorHasBfloat16()) GTEST_SKIP() << "this processor may lack the kernels";
   const bool many = std::min(shape.in_channels, shape.out_channels) >= 64;

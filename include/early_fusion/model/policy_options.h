@@ -19,7 +19,7 @@ struct PolicyOptions {
   int fusion_block = 1;            ///< the goal joins the output of this block; 0: the image itself
   double dropout = 0.5;            ///< after the hidden layer
   int image_size = 128;            ///< [px]
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes in it natively
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes faster in it
 
   /// Horizontal field of view of the frames [degrees]. Not an option: that of the world that the policy is trained in,
   /// or what the weights file says.

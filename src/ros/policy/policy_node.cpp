@@ -27,7 +27,7 @@ core::OptionSet PolicyNode::Options::options() {
   set.addChoice("mode", acting.mode, model::actionChoiceNames(), "how weights from a file choose actions");
   set.add("seed", acting.seed, "seed of drawn actions");
   set.addChoice("precision", acting.precision, model::precisionNames(),
-                "of the arithmetic with weights from a file; auto: bf16 where the processor has it natively");
+                "of the arithmetic with weights from a file; auto: bf16 where the processor computes faster in it");
   set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");

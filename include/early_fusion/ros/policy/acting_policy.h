@@ -17,7 +17,7 @@ namespace early_fusion::nodes {
 struct Acting {
   std::string mode = "argmax";     ///< one of model::actionChoiceNames()
   std::uint64_t seed = 0;          ///< of drawn actions
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor has it natively
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes faster in it
 };
 
 /// The decision on one image.
