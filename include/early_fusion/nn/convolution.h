@@ -17,9 +17,9 @@ struct ConvolutionShape {
 /// Whether the processor computes in bfloat16 natively (avx512_bf16).
 bool processorHasBfloat16();
 
-/// Whether it also computes in it faster than in f32. With Intel's AMX or AMD's AVX-512 it does, 1.3 to 3 times.
-/// Intel's AVX-512 alone multiplies both at the same rate: where a virtual machine hides AMX, bfloat16 takes 1.3 to 3
-/// times as long.
+/// Whether the processor computes in bfloat16 faster than in f32. With Intel's AMX or AMD's AVX-512, bfloat16 is 1.3 to
+/// 3 times as fast. Intel's AVX-512 multiplies both at the same rate: if a virtual machine hides AMX, bfloat16
+/// takes 1.3 to 3 times as long.
 bool processorPrefersBfloat16();
 
 /// A 3x3 convolution of one image with stride 1, one pixel of zero padding and no bias. Maps are (H,W,C), except those
