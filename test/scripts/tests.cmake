@@ -1,3 +1,5 @@
 add_test(NAME scripts_analyse_trace_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/analyse_trace_test.py
                  ${PROJECT_SOURCE_DIR} $<TARGET_FILE:${PROJECT_NAME}_cli>)
+add_test(NAME scripts_documents_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/documents_test.py ${PROJECT_SOURCE_DIR})
