@@ -21,7 +21,7 @@ namespace early_fusion::bench {
 inline constexpr int kItems = 16;
 inline constexpr int kImageSize = 128;
 
-/// Milliseconds that `work` takes, the median of those that add() measured.
+/// The time of `work` [ms], as the median of the times that add() measured.
 class Timing {
  public:
   explicit Timing(std::function<void()> work) : work_(std::move(work)) { work_(); }
@@ -44,15 +44,16 @@ class Timing {
   std::vector<double> milliseconds_;
 };
 
-/// Measures all of them in turn, so that whatever else the machine does falls on each alike.
+/// Measures all works in alternation, so that other load on the machine affects all of them equally.
 inline void alternate(const std::vector<Timing*>& timings, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     for (Timing* timing : timings) timing->add();
   }
 }
 
-/// The fastest convolutions that the library has here, all threads at work: 2 * 9 * 128 * 128 operations for each of
-/// 32x32 pixels. @return billions of operations.
+/// oneDNN's fastest convolutions on this machine, on all threads: 2 * 9 * 128 * 128 operations for each of 32x32
+/// pixels.
+/// @return billions of operations.
 template <class T>
 struct PeakConvolution {
   static constexpr int kChannels = 128, kSize = 32, kRepeats = 8;
@@ -82,8 +83,9 @@ struct PeakConvolution {
   nn::AlignedBuffer<T> in, out;
 };
 
-/// Operations that one image's convolutions need, those of the tiled goal left out: it is a bias.
-/// @param passes 1 for inference; 3 in training, of which the first block's input gradient is not needed.
+/// The number of operations of one image's convolutions. The tiled goal's are left out, because it is a bias.
+/// @param passes 1 for inference, 3 for training. The first block has one pass less in training, because it needs no
+/// gradient of its input.
 inline double networkOperations(int channels, int passes) {
   double total = 0;
   for (int block = 0; block < 4; ++block) {
@@ -102,7 +104,7 @@ inline model::PolicyOptions policyOptions(int channels, const std::string& preci
   return options;
 }
 
-/// With its convolutions' weights in the layout of the images.
+/// The network with its convolutions' weights in the layout of the images.
 inline std::shared_ptr<model::TorchEarlyFusion> torchNetwork(int channels, torch::MemoryFormat format) {
   auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
   for (torch::Tensor& parameter : network->parameters()) {
@@ -117,15 +119,16 @@ inline std::vector<int> channelsFromArguments(int argc, char** argv) {
   return channels.empty() ? std::vector<int>{16, 32, 64, 128} : channels;
 }
 
-/// The same work by our network and by libtorch's. The images are floats before libtorch's clock starts: a head start.
+/// The same work for this package's network and for libtorch's. The conversion of the images to floats is not counted
+/// in libtorch's time, which favours libtorch.
 struct Comparison {
-  int images;  ///< that one run of the work takes
+  int images;  ///< number of images in one run of the work
   int passes;  ///< see networkOperations()
   std::function<std::function<void()>(int channels, const std::string& precision)> ours;
   std::function<std::function<void()>(int channels, torch::MemoryFormat format)> torch;
 };
 
-/// One precision's row, measured together with the others'.
+/// The row of one precision. It is measured in alternation with the other rows.
 template <class T>
 class Contestant {
  public:
@@ -155,7 +158,8 @@ class Contestant {
   Timing peak_;
 };
 
-/// The table of the comparison, a row for each number of channels and precision; all of a number's in alternation.
+/// The table of the comparison, with a row for each number of channels and precision. The rows of one number of
+/// channels are measured in alternation.
 inline void printTable(const Comparison& comparison, int rounds, const std::vector<int>& all_channels) {
   std::printf("%d threads, medians of %d; ms an image\n", omp_get_max_threads(), rounds);
   std::printf("channels  precision      ours  libtorch   ratio  GFLOP/s*     floor    share\n");
@@ -177,8 +181,9 @@ inline void printTable(const Comparison& comparison, int rounds, const std::vect
     std::fflush(stdout);
   }
   std::printf(
-      "libtorch: f32, the better of its default and channels-last layouts. *: the library's best convolution,\n"
-      "measured in the same run; floor: the network's operations at that speed; share: of our time.\n");
+      "libtorch: f32, the faster of its default and channels-last layouts. *: oneDNN's fastest convolution, measured "
+      "in\n"
+      "the same run. floor: the time of the network's operations at that speed. share: floor / ours.\n");
 }
 
 }  // namespace early_fusion::bench

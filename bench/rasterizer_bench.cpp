@@ -9,7 +9,7 @@ namespace early_fusion::render {
 namespace {
 
 constexpr int kItems = 16;
-constexpr int kCells = 9;  // 972 triangles a box, about as many a ball
+constexpr int kCells = 9;  // 972 triangles in a box, about as many in a ball
 constexpr int kImageSize = 128;
 
 const world::World& world() {
@@ -17,14 +17,14 @@ const world::World& world() {
   return *kitchen;
 }
 
-/// A camera that wanders over the counter: another image in every frame.
+/// A camera that pans over the counter, so that every frame is different.
 Eigen::Isometry3d wanderingCamera(int frame) {
   const double pan = 0.5 * std::sin(0.013 * frame), tilt = 0.45 + 0.15 * std::sin(0.031 * frame);
   return world::lookAlong({0, 0, 1.35},
                           {std::cos(pan) * std::cos(tilt), std::sin(pan) * std::cos(tilt), -std::sin(tilt)});
 }
 
-/// Images a second; the argument is the number of objects. Every thread has a rasterizer of its own.
+/// Frames a second. The argument is the number of objects. Every thread has its own rasterizer.
 void render(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
   rasterizer.setObjects(world::handmadeScene(static_cast<int>(state.range(0)), kItems));
@@ -38,7 +38,7 @@ void render(benchmark::State& state) {
 }
 BENCHMARK(render)->ArgName("objects")->Arg(4)->Arg(8)->Arg(12)->Threads(1)->Threads(2)->UseRealTime();
 
-/// The shadow map drawn anew, as at the begin of an episode and after COLLECT and REMOVE.
+/// Draws the shadow map again, as at the start of an episode and after COLLECT and REMOVE.
 void changeScene(benchmark::State& state) {
   Rasterizer rasterizer(world(), kImageSize);
   const std::vector<world::ObjectPose> all = world::handmadeScene(static_cast<int>(state.range(0)), kItems);

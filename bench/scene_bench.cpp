@@ -4,7 +4,7 @@
 #include "early_fusion/sim/scene.h"
 #include "early_fusion/sim/task.h"
 
-/// What an episode of the shipped world costs before its first frame: placement, then the cone table.
+/// The time to set up an episode of the shipped world: placement, then the cone table.
 namespace early_fusion::sim {
 namespace {
 

@@ -51,35 +51,35 @@ def confusion(episodes):
     for expert in ACTIONS:
         total = sum(counts[expert, action] for action in ACTIONS)
         rows.append([expert, total] + [share(counts[expert, action], total) for action in ACTIONS])
-    table("What the policy does (columns) where the expert would do what (rows)", ["expert", "steps"] + ACTIONS, rows)
+    table("The policy's actions (columns) by the expert's label (rows)", ["expert", "steps"] + ACTIONS, rows)
 
 
 def taken(step):
-    """The item that COLLECT takes at a step; None when it takes nothing."""
+    """The item that COLLECT takes at a step; None if it takes nothing."""
     if step["action"] != "COLLECT" or not step["in_cone"]:
         return None
     return next(entry["item"] for entry in step["scene"] if entry["instance"] == step["in_cone"][0])
 
 
 def collects(steps):
-    """The steps at which COLLECT takes something, and what."""
+    """The steps at which COLLECT takes an object, with the object's item."""
     return [(step, taken(step)) for step in steps if taken(step) is not None]
 
 
 def way(step, none):
-    """Steps that collecting the nearest requested object costs; `none` where there is none to be reached."""
+    """The expert's steps to the nearest requested object; `none` if none can be reached."""
     return min((cost["steps"] for cost in step["expert_costs"]), default=none)
 
 
 def distance(steps):
-    """Steps from the start to the nearest requested object, by tens."""
+    """The expert's steps from the start to the nearest requested object, in tens."""
     nearest = way(steps[0], 0)
     low = 10 * (nearest // 10)
     return f"{low} to {low + 9} steps"
 
 
 def exposure(steps, item):
-    """How much of the way to an item's best exposed instance was free at the start."""
+    """The exposure of an item's best exposed instance at the start."""
     best = max(entry["exposure"] for entry in steps[0]["scene"] if entry["item"] == item)
     if best in (0, 1):
         return "none" if best == 0 else "all"
@@ -87,7 +87,7 @@ def exposure(steps, item):
 
 
 def collected_by(title, key, episodes):
-    """key(steps, item) names the group that a requested item belongs to."""
+    """Prints a table of groups of requested items. key(steps, item) is the name of an item's group."""
     requested, collected = collections.Counter(), collections.Counter()
     for steps in episodes:
         for item in steps[0]["request"]:
@@ -115,32 +115,32 @@ def f1_score(steps):
 
 
 def mistake(step):
-    """What led to a COLLECT that took something not requested."""
+    """The cause of a COLLECT that took an unrequested object."""
     if not step["request"]:
-        return "collected when nothing was requested any more"
+        return "collected an object after the request was finished"
     instances = {entry["instance"]: entry["item"] for entry in step["scene"]}
     if any(instances[instance] in step["request"] for instance in step["in_cone"]):
-        return "collected what stands before a requested object in the cone"
+        return "collected an object that is in front of a requested one in the cone"
     if way(step, float("inf")) <= NEAR:
-        return f"collected what stands beside a requested object, {NEAR - 1} moves from it or less"
-    return "collected something else"
+        return f"collected an object that is beside a requested one, at most {NEAR - 1} moves from it"
+    return "collected another object"
 
 
 def ending(steps):
-    """Why something requested is left at the end."""
+    """The cause of a requested object that is left at the end."""
     last = steps[-LAST:]
     places = {(step["pan_deg"], step["tilt_deg"]) for step in last}
     if way(steps[0], 0) > len(steps):
-        return "out of reach: the expert needs more steps than there are, too"
+        return "out of reach: the expert also needs more steps than the episode has"
     if not any(entry["exposure"] for entry in last[-1]["scene"] if entry["item"] in last[-1]["request"]):
-        return "not collected: nothing but REMOVE makes way to it"
+        return "not collected: fully occluded, only REMOVE gives access to it"
     if len(places) == 1:
-        return f"not collected: {' and '.join(sorted({step['action'] for step in last}))} in vain"
-    return "not collected: to and fro" if len(places) <= 3 else "not collected: still under way when time was up"
+        return f"not collected: repeated {' and '.join(sorted({step['action'] for step in last}))} without effect"
+    return "not collected: panned back and forth" if len(places) <= 3 else "not collected: still moving at the end"
 
 
 def faults(steps):
-    """Why an episode's F1 is less than 1: a cause for each mistake and for each requested object not collected."""
+    """The causes of an F1 below 1: one for each mistake and one for each requested object that was not collected."""
     wrong = [mistake(step) for step, item in collects(steps) if item not in step["request"]]
     right = len(collects(steps)) - len(wrong)
     left = len(steps[-1]["request"]) - (taken(steps[-1]) in steps[-1]["request"])
@@ -155,8 +155,8 @@ def losses(episodes):
             counts[cause] += 1
             lost[cause] += (1 - f1_score(steps)) / len(causes) / len(episodes)
             which[cause].append(steps[0]["episode"])
-    table(f"What F1 {sum(f1_score(steps) for steps in episodes) / len(episodes):.3f} lacks of 1 (each episode's share "
-          "divided equally among what went wrong in it)",
+    mean = sum(f1_score(steps) for steps in episodes) / len(episodes)
+    table(f"Causes of the lost F1 (F1 is {mean:.3f}; an episode's loss is divided equally between its causes)",
           ["cause", "F1 lost", "times", "episodes"],
           [[cause, f"{loss:.4f}", counts[cause],
             ", ".join(map(str, which[cause][:SHOWN])) + (", ..." if len(which[cause]) > SHOWN else "")]
@@ -165,13 +165,13 @@ def losses(episodes):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("trace", help="what `early_fusion evaluate --trace` wrote")
+    parser.add_argument("trace", help="the file that `early_fusion evaluate --trace` wrote")
     episodes = read_episodes(parser.parse_args().trace)
     confusion(episodes)
-    collected_by("By type", lambda steps, item: item, episodes)
-    collected_by("By the expert's way from the start to the nearest requested object",
+    collected_by("Collected, by item", lambda steps, item: item, episodes)
+    collected_by("Collected, by the expert's steps from the start to the nearest requested object",
                  lambda steps, item: distance(steps), episodes)
-    collected_by("By the share of the orientations towards it at which nothing stood before it", exposure, episodes)
+    collected_by("Collected, by exposure at the start", exposure, episodes)
     mistakes(episodes)
     losses(episodes)
 

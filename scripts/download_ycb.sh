@@ -19,11 +19,10 @@ usage() {
 Usage: $(basename "$0") [--to FOLDER] [ID...]
 
 Downloads scans of the YCB object and model set (Calli et al. 2015, CC BY 4.0; http://www.ycbbenchmarks.com), some
-megabytes each, and writes FOLDER/objects.yaml, an object set of those named. Scans that are already there are not
-downloaded again.
+megabytes each, and writes FOLDER/objects.yaml, an object set of these scans. Existing scans are not downloaded again.
 
-  ID           a scan such as 003_cracker_box; without any, the eighteen that config/ycb_objects.yaml lists
-  --to FOLDER  where to put them [$folder]
+  ID           a scan such as 003_cracker_box; default: the eighteen scans of config/ycb_objects.yaml
+  --to FOLDER  the folder for the scans [$folder]
   --help       this text
 EOF
 }
@@ -42,7 +41,7 @@ download() {
   fi
   echo "$id: downloading $url"
   curl --fail --location --retry 3 --silent --show-error --output "$scratch/$id.tgz" "$url" ||
-    fail "cannot download $url. Is '$id' the name of a scan, and is there a connection?"
+    fail "cannot download $url: check the name '$id' and the network connection"
   tar -xzf "$scratch/$id.tgz" -C "$scratch" || fail "$url is not a complete archive: try again"
   [[ -f "$scratch/$id/google_16k/textured.obj" ]] ||
     fail "$url has no $id/google_16k/textured.obj: this scan cannot be used"
@@ -65,7 +64,7 @@ while [[ $# -gt 0 ]]; do
       ;;
     -*) fail "unknown option '$1'; --help lists the known ones" ;;
     *)
-      [[ "$1" =~ ^[0-9]{3}(-[a-z])?_[a-z0-9_-]+$ ]] || fail "'$1' is no name of a scan; they look like 003_cracker_box"
+      [[ "$1" =~ ^[0-9]{3}(-[a-z])?_[a-z0-9_-]+$ ]] || fail "'$1' is not the name of a scan such as 003_cracker_box"
       ids+=("$1")
       ;;
   esac

@@ -35,7 +35,7 @@ def read_run(argument):
 
 
 def smoothed(values, width):
-    """The mean over the last `width` values of each."""
+    """The moving average over `width` values."""
     return [sum(values[max(0, i + 1 - width):i + 1]) / min(i + 1, width) for i in range(len(values))]
 
 
@@ -55,7 +55,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", metavar="NAME=FOLDER", help="a run folder, which holds curve.csv")
     parser.add_argument("--out", required=True, help="the image: .svg or .png")
-    parser.add_argument("--smooth", type=int, default=10, help="rounds that a point is the mean of [%(default)s]")
+    parser.add_argument("--smooth", type=int, default=10, help="number of rounds that are averaged for a point [%(default)s]")
     options = parser.parse_args()
     groups = {}
     for argument in options.runs:

@@ -33,7 +33,7 @@ install_missing() {
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done
   [ "${#missing[@]}" -gt 0 ] || return 0
-  echo "Installing ${#missing[@]} packages and what they depend on: ${missing[*]}"
+  echo "Installing ${#missing[@]} packages and their dependencies: ${missing[*]}"
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "setup.sh: not root, and no sudo; install these packages first" >&2; exit 1; }
@@ -57,7 +57,7 @@ else
 fi
 install_missing "${packages[@]}"
 
-# Once tests have been configured they stay so: train.sh and test.sh share one build folder.
+# train.sh and test.sh share one build folder, so train.sh keeps the tests configured.
 if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/CMakeCache.txt; then
   cmake -S . -B build -DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests >build.log 2>&1 ||
     { cat build.log; exit 1; }

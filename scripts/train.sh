@@ -2,12 +2,13 @@
 # Sets everything up and runs a full training session: simulator, policy and trainer node.
 #
 # Usage: scripts/train.sh [name:=value ...]
-#   A name is an argument of train.launch (`roslaunch --ros-args early_fusion train.launch` lists them) or an option of
-#   training (`early_fusion train --help`): scripts/train.sh task:=medium channels:=32 learning_rate:=1e-3
+#   A name is an argument of train.launch (`roslaunch --ros-args early_fusion train.launch` lists them) or a parameter of
+#   trainer_node (`rosrun early_fusion trainer_node --help`). Other names are errors.
+#   Example: scripts/train.sh task:=medium channels:=32 learning_rate:=1e-3
 set -euo pipefail
 case "${1:-}" in
   -h | --help)
-    sed -n '2,6s/^# \{0,1\}//p' "$0"
+    sed -n '2,7s/^# \{0,1\}//p' "$0"
     exit 0
     ;;
 esac
@@ -27,8 +28,8 @@ scripts/setup.sh
 output="$PWD/runs/$(date +%Y%m%d-%H%M%S)"
 task=simple
 world=""
-# Names that are no arguments of train.launch go to the trainer in `options`: it refuses what it does not know, where
-# roslaunch would ignore it.
+# Names that are not arguments of train.launch are passed to the trainer in `options`. roslaunch would ignore an unknown
+# name; the trainer refuses it.
 known=$(sed -n 's/.*<arg name="\([a-z_]*\)".*/\1/p' launch/train.launch)
 passed=()
 options=""
@@ -64,9 +65,9 @@ if [ -z "${ROS_MASTER_URI:-}" ] || [ "$ROS_MASTER_URI" = http://localhost:11311 
 fi
 cat <<TEXT
 Training session in $output.
-The simulator plays episodes, the policy acts in them, and the trainer labels every step with what an expert would do
-and trains the policy on it, round by round; a line tells how each went. F1 is that of the round's episodes, in which
-the policy still tries things out; at the end it is scored on episodes that it never saw. Watch from another terminal:
+The simulator plays episodes and the policy acts in them. The trainer labels every step with an expert's action and
+trains the policy in rounds. It prints one line for each round. F1 is that of the rollouts, which explore. At the end,
+the policy is scored on held-out episodes. To watch the session, use another terminal:
   export ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP; . $PWD/devel/setup.sh; rostopic echo /progress
 TEXT
 roslaunch "${port_option[@]}" early_fusion train.launch "output:=$output" "${passed[@]}"
@@ -85,10 +86,10 @@ PYTHON
 }
 score "$output/result.json" "Its score"
 
-# The score of the policy that ships for the same task, in the same world, for comparison.
+# For comparison: the score of the shipped policy for the same task in the same world.
 episodes=$(/usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["episodes"])' "$output/result.json")
 shipped="models/$task.safetensors"
-[ -f "$shipped" ] || shipped=models/medium.safetensors  # also does the other tasks
+[ -f "$shipped" ] || shipped=models/medium.safetensors  # which also does the other tasks
 if [ -z "$world" ] && [ "$episodes" -gt 0 ]; then
   comparison=$(mktemp)
   trap 'rm -f "$comparison"' EXIT

@@ -7,7 +7,7 @@
 
 namespace early_fusion::cli {
 
-// One function a subcommand: it declares its flags and what to do when it is chosen.
+// One function for each subcommand. It declares the subcommand's flags and its callback.
 void addTrain(CLI::App& app);
 void addEvaluate(CLI::App& app);
 void addDifficulty(CLI::App& app);
@@ -19,7 +19,7 @@ void addUrdf(CLI::App& app);
 /// to `given`, which must outlive the app.
 void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given);
 
-/// Writes to the file, or to standard output when it is "-".
+/// Writes to the file, or to standard output if it is "-".
 void writeTo(const std::string& file, const std::string& text);
 
 /// Whether standard error is a terminal, where a line can be overwritten.

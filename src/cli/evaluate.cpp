@@ -28,7 +28,7 @@ void evaluate(const EvaluateOptions& options) {
   const sim::Task task = sim::loadTask(options.task);
   NamedAgent named = makeNamedAgent(options.policy, options.mode, options.seed, *world);
   learning::RolloutRunner runner(*world, task, options.seed);
-  std::map<std::uint64_t, std::string> traces;  // by episode: several are played at a time
+  std::map<std::uint64_t, std::string> traces;  // by episode, because several episodes are played at the same time
   if (!options.trace.empty()) {
     runner.setObserver([&](std::uint64_t episode, const sim::Episode& before, const learning::TrajectoryStep& step) {
       traces[episode] += learning::traceLine(*world, episode, before, step.action);
@@ -57,16 +57,18 @@ void addEvaluate(CLI::App& app) {
   const auto options = std::make_shared<EvaluateOptions>();
   command->add_option("--policy", options->policy, "expert, searching, random, idle, or a weights file")->required();
   command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file")->capture_default_str();
-  command->add_option("--episodes", options->episodes, "how many")
+  command->add_option("--episodes", options->episodes, "number of episodes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "which episodes; the default's are held out from all training")
+  command
+      ->add_option("--seed", options->seed, "seed of the episodes; those of the default are held out from all training")
       ->capture_default_str();
   command->add_option("--json", options->json, "write means and per-episode scores to this file; -: standard output");
-  command->add_option("--trace", options->trace,
-                      "write every step as a line of JSON to this file: scene, orientation, request, action, the\n"
-                      "expert's action and its cost per requested object (docs/trace.md); -: standard output");
-  command->add_option("--mode", options->mode, "how a weights file's policy chooses")
+  command->add_option(
+      "--trace", options->trace,
+      "write every step as a line of JSON to this file: scene, orientation, request, action, label and\n"
+      "the expert's steps to each requested object (docs/trace.md); -: standard output");
+  command->add_option("--mode", options->mode, "how a weights file's policy chooses actions")
       ->check(CLI::IsMember(model::actionChoiceNames()))
       ->capture_default_str();
   command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");

@@ -16,7 +16,7 @@ cv::Mat view(const core::Image& image) {
   return cv::Mat(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
 }
 
-/// Images of one size side by side, kColumns in a row.
+/// A sheet of images of one size, kColumns in a row.
 core::Image sheet(const std::vector<core::Image>& images) {
   const int width = images.front().width, height = images.front().height;
   const int rows = (static_cast<int>(images.size()) + kColumns - 1) / kColumns;
@@ -73,7 +73,7 @@ std::vector<core::Image> drawSteps(const world::World& world, const std::vector<
 }
 
 core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const ImageStyle& style) {
-  constexpr int kSpread = 5;  // steps between two images where nothing is taken
+  constexpr int kSpread = 5;  // steps between two images if no object is taken
   std::vector<PlayedStep> shown;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool last = i + 1 == steps.size();

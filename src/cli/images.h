@@ -18,7 +18,7 @@ struct PlayedStep {
 
 struct ImageStyle {
   int size;       ///< edge of each drawn image [px]
-  int scale;      ///< each is enlarged so many times
+  int scale;      ///< enlargement of each image
   bool annotate;  ///< crosshair circle, request and action
 };
 

@@ -56,7 +56,7 @@ void inspectWorld(const std::string& path) {
 
 void addInspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand("inspect",
-                                         "Print what a file holds: weights or a checkpoint, a task, or the world.\n"
+                                         "Print the contents of weights, a checkpoint, a task or a world.\n"
                                          "Example: early_fusion inspect models/simple.safetensors");
   command->require_option(1);
   command->add_option_function<std::string>("weights", inspectWeights, "a weights file or a checkpoint");

@@ -5,7 +5,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Trains, scores and looks at policies that point a pan-tilt camera at requested objects and collect them\n"
+      "Trains, scores and shows policies that point a pan-tilt camera at requested objects and collect them\n"
       "(Walsman et al., \"Early Fusion for Goal Directed Robotic Vision\", IROS 2019), without ROS.");
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);

@@ -14,13 +14,13 @@ NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std:
   NamedAgent named;
   named.policy = model::loadPolicy(nn::WeightsFile::read(name), name);
   if (named.policy->vocabulary() != world.objects.vocabulary()) {
-    throw core::Error(name + ": was trained on other items than the world's object set has (" + world.options.objects +
+    throw core::Error(name + ": its items differ from those of the world's object set (" + world.options.objects +
                       "); use the object set that it was trained on");
   }
   if (named.policy->options().image_size != world.options.image_size) {
-    throw core::Error(name + ": sees images of " + std::to_string(named.policy->options().image_size) +
-                      " pixels, but the world draws " + std::to_string(world.options.image_size) +
-                      "; set the world's image_size");
+    throw core::Error(name + ": its frames have " + std::to_string(named.policy->options().image_size) +
+                      " px and the world's have " + std::to_string(world.options.image_size) +
+                      " px; set the world's image_size");
   }
   named.agent = learning::makePolicyAgent(*named.policy, model::actionChoiceFromName(mode), seed);
   return named;

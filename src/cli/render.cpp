@@ -35,12 +35,12 @@ core::OptionSet RenderOptions::options() {
   set.addChoice("image", image, {"step", "steps", "episode", "objects"},
                 "one step, all steps in a file each, a sheet of the episode, or a sheet of all objects");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
-  set.add("seed", seed, "with --episode, which episode");
+  set.add("seed", seed, "seed of the episode");
   set.add("episode", episode, "number of the episode");
-  set.add("step", step, 0, 99999, "", "which step of it");
-  set.add("policy", policy, "who acts until then: expert, searching, random, idle, or a weights file");
+  set.add("step", step, 0, 99999, "", "number of the step");
+  set.add("policy", policy, "agent that acts: expert, searching, random, idle, or a weights file");
   core::addImageSize(set, "size", size, "edge of a drawn image");
-  set.add("scale", scale, 1, 16, "", "enlarge each image so many times");
+  set.add("scale", scale, 1, 16, "", "enlargement of each image");
   set.add("annotate", annotate, "add the crosshair circle, the request and the action");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
   set.add("out", out, "the PNG file to write; with --image steps, the folder for step_00.png, step_01.png and so on");
@@ -87,7 +87,7 @@ void render(const RenderOptions& options) {
   }
   const sim::Task task = sim::loadTask(options.task);
   if (options.step >= task.steps) {
-    throw core::Error("--step: " + std::to_string(options.step) + " is past the task's last step, " +
+    throw core::Error("--step: " + std::to_string(options.step) + " is after the task's last step, " +
                       std::to_string(task.steps - 1));
   }
   const std::vector<PlayedStep> played = play(options, *world, task);

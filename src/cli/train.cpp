@@ -19,7 +19,7 @@ void report(const learning::Progress& progress) {
 void train(const core::GivenOptions& given) {
   const learning::SessionOptions options = learning::resolveSessionOptions(given, "command line");
   learning::TrainingSession session(options, world::loadWorld(options.world));
-  std::cerr << (session.resumed() ? "Going on with " : "Training ") << options.policy.kind << " ("
+  std::cerr << (session.resumed() ? "Resuming " : "Training ") << options.policy.kind << " ("
             << session.trainer().policy().parameters().values().size() << " parameters) on " << options.task
             << ", preset " << options.preset << ", in " << options.output << "\n";
   const learning::Evaluation evaluation = learning::runSession(session, report);

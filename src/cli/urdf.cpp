@@ -24,14 +24,14 @@ void print(const UrdfOptions& options) {
 void addUrdf(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("urdf",
-                         "Print a URDF that a world file names: launch files make robot_description of it.\n"
+                         "Print a URDF that a world file names. Launch files set robot_description to it.\n"
                          "Example: early_fusion urdf camera --world my_world.yaml");
   const auto options = std::make_shared<UrdfOptions>();
-  command->add_option("part", options->part, "the pan-tilt camera, or what stands around it")
+  command->add_option("part", options->part, "which URDF to print")
       ->required()
       ->check(CLI::IsMember({"camera", "kitchen"}));
   command->add_option("--world", options->world,
-                      "a world's YAML file; default, also when empty: config/world.yaml of the package");
+                      "a world's YAML file; default, also if empty: config/world.yaml of the package");
   command->callback([options] { print(*options); });
 }
 

@@ -73,11 +73,11 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw Error(path + ": cannot make the folder " + folder.string() + ": " + error.message());
+  if (error) throw Error(path + ": cannot create the folder " + folder.string() + ": " + error.message());
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   try {
     writeAndSync(temporary, bytes);
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "rename the new file to it");
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "replace it by the new file");
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
@@ -116,7 +116,8 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
     if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  throw Error("'" + name_or_file + "' is none of the known " + folder + " (" + joined(known) + ") and no .yaml file");
+  throw Error("'" + name_or_file + "' is neither one of the known " + folder + " (" + joined(known) +
+              ") nor a .yaml file");
 }
 
 }  // namespace early_fusion::core

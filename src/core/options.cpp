@@ -14,7 +14,7 @@ namespace early_fusion::core {
 
 namespace {
 
-/// Shortest text that reads back as the same number.
+/// The shortest text that parses to the same number.
 std::string toText(double value) {
   char buffer[32];
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);

@@ -13,7 +13,7 @@ using core::Action;
 
 int lowest(sim::InstanceMask mask) { return __builtin_ctz(mask); }
 
-/// Where several actions are equally good, the first of these is the label.
+/// If several actions are equally good, the label is the first of these.
 constexpr std::array<Action, 6> kLabelOrder = {Action::kCollect,  Action::kRemove, Action::kPanLeft,
                                                Action::kPanRight, Action::kTiltUp, Action::kTiltDown};
 

@@ -37,7 +37,7 @@ class PolicyAgent : public Agent {
   using Row = Eigen::Matrix<float, 1, core::kActionCount>;
   std::vector<model::Observation> observations_;
   model::Probabilities probabilities_;
-  std::map<std::uint64_t, Row> last_;  // probabilities by episode: a step that repeats the one before has the same
+  std::map<std::uint64_t, Row> last_;  // latest probabilities by episode, because a repeat has the same ones
 };
 
 /// An agent that decides on each situation separately.

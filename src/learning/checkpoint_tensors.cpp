@@ -17,7 +17,7 @@ const nn::StoredTensor& find(const nn::WeightsFile& file, const std::string& nam
                              std::size_t dimensions, const std::string& source) {
   const auto found = file.tensors.find(name);
   if (found == file.tensors.end()) {
-    throw core::Error(source + ": there is no tensor " + name + "; this is not a checkpoint of a training session");
+    throw core::Error(source + ": has no tensor " + name + ", so it is not a checkpoint of a training session");
   }
   if (found->second.dtype != dtype || found->second.shape.size() != dimensions) {
     throw core::Error(source + ": tensor " + name + " should have type " + dtype + " and " +
@@ -37,7 +37,7 @@ Eigen::VectorXf loadFloats(const nn::WeightsFile& file, const std::string& name,
   const nn::StoredTensor& tensor = find(file, name, "F32", 1, source);
   if (tensor.shape[0] != size) {
     throw core::Error(source + ": tensor " + name + " has " + std::to_string(tensor.shape[0]) + " values, not " +
-                      std::to_string(size) + " as the policy needs");
+                      std::to_string(size) + " as the policy");
   }
   Eigen::VectorXf values(size);
   std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
@@ -72,7 +72,7 @@ std::vector<std::vector<core::Action>> loadActions(const nn::WeightsFile& file, 
       const auto number = static_cast<std::uint8_t>(*byte++);
       if (number >= core::kActionCount) {
         throw core::Error(source + ": tensor " + name + " holds " + std::to_string(number) +
-                          ", which is no action; the file is damaged");
+                          ", which is not an action; the file is damaged");
       }
       action = static_cast<core::Action>(number);
     }

@@ -27,7 +27,7 @@ LearningCurve LearningCurve::parse(const std::string& csv, const std::string& so
                     &round.loss, &round.learning_rate, &round.f1, &round.agreement, &point.elapsed_sec);
     if (number == 1 || read != 7) {
       throw core::Error(source + ": learning curve, line " + std::to_string(number) + ": '" + line +
-                        "' is not as expected, " + kHeader);
+                        "' is not a line with the columns " + kHeader);
     }
     curve.add(point);
   }

@@ -7,7 +7,7 @@ namespace early_fusion::learning {
 
 namespace {
 
-/// Episodes in lockstep: enough for both cores and for a batch of decisions, few enough to stay in the cache.
+/// The number of episodes in lockstep. It is large enough to keep all threads busy and small enough for the cache.
 constexpr int kLockstep = 10;
 
 }  // namespace

@@ -6,15 +6,15 @@ namespace early_fusion::learning {
 
 core::OptionSet SessionOptions::options() {
   core::OptionSet set("session");
-  set.add("task", task, "simple, medium, hard, or a task's YAML file");
+  set.add("task", task, "the task to learn: simple, medium, hard, or a task's YAML file");
   set.add("preset", preset,
-          "fast, paper, or a YAML file: how the policy learns; its values replace the defaults of other options");
+          "fast, paper, or a preset's YAML file; its values replace the defaults of the other options");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
-  set.add("seed", seed, "decides episodes, first weights and every other draw");
-  set.add("output", output, "run folder: checkpoint, weights, learning curve, result");
-  set.add("resume", resume, "go on from the checkpoint in the output folder where there is one");
+  set.add("seed", seed, "determines the episodes, the initial weights and every other random draw");
+  set.add("output", output, "run folder for the checkpoint, the weights, the learning curve and the result");
+  set.add("resume", resume, "continue from the run folder's checkpoint if there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
-          "held-out ones that the final score is the mean of");
+          "number of held-out episodes for the final score");
   set.include(policy.options());
   set.include(training.options());
   return set;

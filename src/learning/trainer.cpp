@@ -17,9 +17,10 @@ namespace {
 
 constexpr char kFirstMoment[] = "checkpoint.adam.first_moment";
 constexpr char kSecondMoment[] = "checkpoint.adam.second_moment";
-constexpr char kLearnerParameters[] = "checkpoint.learner.parameters";  // of the trained policy, not its average
+constexpr char kLearnerParameters[] =
+    "checkpoint.learner.parameters";  // of the trained policy, not of its moving average
 constexpr char kLearnerBuffers[] = "checkpoint.learner.buffers";
-constexpr char kCounters[] = "checkpoint.counters";  // trajectories, new ones, rounds, Adam's steps
+constexpr char kCounters[] = "checkpoint.counters";  // trajectories, new trajectories, rounds, Adam's steps
 
 nn::AdamOptions adamOptions(const TrainingOptions& options) {
   nn::AdamOptions adam;
@@ -125,7 +126,7 @@ double Trainer::trainStep(const std::vector<model::Sample>& batch, std::uint64_t
   return loss;
 }
 
-/// The decay grows with the number n of training steps, n / (n + 10), up to options_.weight_ema: so the average soon
+/// The decay is n / (n + 10), where n is the number of training steps, up to options_.weight_ema. So the average soon
 /// forgets the untrained weights.
 void Trainer::updateAverage() {
   const auto steps = static_cast<double>(adam_.stepCount());
@@ -141,7 +142,7 @@ void Trainer::checkFinite(const RoundStatistics& statistics) const {
   if (std::isfinite(statistics.loss) && trained.values().allFinite() && trained.buffers().allFinite()) return;
   throw core::Error("training has diverged in round " + std::to_string(rounds_) + ", at a rate of " +
                     std::to_string(statistics.learning_rate) +
-                    ": loss or weights are not finite; start again with a lower learning_rate");
+                    ": the loss or the weights are not finite; start a new session with a lower learning_rate");
 }
 
 nn::WeightsFile Trainer::save() const {
@@ -161,7 +162,7 @@ nn::WeightsFile Trainer::save() const {
 void Trainer::restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay) {
   const std::vector<std::int64_t> counters = loadIntegers(file, kCounters, source);
   if (counters.size() != 4 || *std::min_element(counters.begin(), counters.end()) < 0) {
-    throw core::Error(source + ": tensor " + kCounters + " should hold 4 counts; the file is damaged");
+    throw core::Error(source + ": tensor " + kCounters + " must have 4 counts; the file is damaged");
   }
   restorePolicy(file, source);
   const Eigen::Index size = policy().parameters().values().size();
@@ -180,7 +181,7 @@ void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& sour
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
     throw core::Error(source + ": its policy has other items or another network; its items are " +
                       core::joined(loaded->vocabulary().names()) +
-                      "; resume with the session's objects and policy options, or start a new session");
+                      "; resume with the session's object set and policy options, or start a new session");
   }
   acting = std::move(loaded);
   if (!ema_) return;

@@ -9,49 +9,53 @@ namespace early_fusion::learning {
 namespace {
 
 void addRounds(TrainingOptions& options, core::OptionSet& set) {
-  set.add("trajectories", options.trajectories, 1, 100000000, "trajectories",
-          "how many to roll out and learn from in all");
-  set.add("max_instances", options.max_instances, 0, sim::kMaxInstances, "",
-          "objects on the counter in training episodes at most: each draws its number from the task's to this one; the "
-          "final score is on the task as it is. 0: as the task has them");
+  set.add("trajectories", options.trajectories, 1, 100000000, "trajectories", "length of the session");
+  set.add(
+      "max_instances", options.max_instances, 0, sim::kMaxInstances, "",
+      "each training episode draws its number of objects from the task's number to this one; held-out episodes have "
+      "the task's number; 0: as the task");
   set.add("trajectories_per_round", options.trajectories_per_round, 1, 100000, "trajectories",
-          "new ones before the policy is trained");
-  set.add("window", options.window, 1, 100000, "trajectories", "the most recent ones that are trained on");
+          "new trajectories before the policy is trained on the window");
+  set.add("window", options.window, 1, 100000, "trajectories",
+          "the number of most recent trajectories that a round trains on");
   set.add("epochs", options.epochs, 0.01, 100, "passes",
-          "over the window in a round; a fraction takes a random part of it");
-  set.add("batch_size", options.batch_size, 1, 1024, "frames", "in a training step, each with its requests");
+          "passes over the window in a round; a fraction takes a random part of it");
+  set.add("batch_size", options.batch_size, 1, 1024, "frames",
+          "frames in a training step, each with its labelled requests");
   set.addChoice("exploration", options.exploration, model::actionChoiceNames(),
-                "how rollouts choose among the probabilities");
+                "how rollouts choose actions from the probabilities");
 }
 
 void addLabelling(TrainingOptions& options, core::OptionSet& set) {
-  set.addChoice("training_expert", options.training_expert, trainingExpertNames(),
-                "whose labels are learnt: the expert's that sees everything, or those of one that looks for what is "
-                "not in view");
+  set.addChoice(
+      "training_expert", options.training_expert, trainingExpertNames(),
+      "whose labels the policy learns: the greedy expert knows the whole scene, the searching expert only what "
+      "a policy can know");
   set.add("requests_per_frame", options.requests_per_frame, 1, kMaxRequestsPerFrame, "",
-          "that a frame is labelled and learnt for: the policy's own, and others that could have been made there");
+          "labelled requests for each frame: the policy's own, then others that are possible in the scene");
   set.add("skip_repeats", options.skip_repeats,
-          "leave out steps that showed the policy the same as the step before and in which its action was optimal");
+          "leave out repeats (steps with the frames and the request of the previous step) with an optimal action");
   set.add("failed_collects", options.failed_collects,
-          "learn also what to do after a COLLECT one move too early has failed and nothing has changed");
+          "add samples that show the unchanged frame after a COLLECT one move too early");
   set.add("soft_labels", options.soft_labels, 0, 1, "",
-          "share of a target that goes to all of the expert's optimal actions alike instead of the first of them");
+          "share of the target that is divided between all optimal actions; the label has the rest");
   set.add("unlikelihood", options.unlikelihood, 0, 1000, "",
-          "weight of the unlikelihood loss of what does harm: to COLLECT what is not requested, to REMOVE what is, and "
-          "either where nothing is in the cone and nothing has moved");
-  set.add("balance", options.balance, 0, 1, "", "weigh a sample by (its label's frequency in the window)^-balance");
+          "weight of the unlikelihood loss of harmful actions: COLLECT of an unrequested object, REMOVE of a requested "
+          "one, and both if the cone is empty and the frame has not changed");
+  set.add("balance", options.balance, 0, 1, "", "a sample's weight is (its label's frequency in the window)^-balance");
 }
 
 void addOptimizer(TrainingOptions& options, core::OptionSet& set) {
-  set.add("learning_rate", options.learning_rate, 0, 1, "", "of Adam, at the session's start");
-  set.add("final_learning_rate", options.final_learning_rate, 0, 1, "", "of Adam, at its end, reached along a cosine");
-  set.add("weight_decay", options.weight_decay, 0, 1, "", "of Adam, decoupled");
-  set.add("batch_renorm_start", options.batch_renorm_start, 0, 100000000, "steps",
-          "of training before batch norm normalises with its running statistics, as in acting, instead of each "
-          "batch's; 0: it never does");
+  set.add("learning_rate", options.learning_rate, 0, 1, "", "Adam's rate at the start of the session");
+  set.add("final_learning_rate", options.final_learning_rate, 0, 1, "",
+          "Adam's rate at the end of the session, reached along a cosine");
+  set.add("weight_decay", options.weight_decay, 0, 1, "", "decoupled weight decay (AdamW)");
+  set.add(
+      "batch_renorm_start", options.batch_renorm_start, 0, 100000000, "steps",
+      "training step from which batch norm normalises with its running statistics instead of the batch's; 0: never");
   set.add("weight_ema", options.weight_ema, 0, 0.999999, "",
-          "act with the exponential moving average of the weights and statistics over training steps: its decay a "
-          "step; 0: act with the last ones");
+          "decay, for each training step, of the exponential moving average of the weights, which acts and is saved; "
+          "0: the last weights act");
 }
 
 }  // namespace

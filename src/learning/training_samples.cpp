@@ -28,7 +28,7 @@ ActionArray target(const expert::Label& label, double soft_labels) {
 
 bool frameChanged(const core::FrameStack& frames) { return frames[0] != frames[1]; }
 
-/// @param nearest_item in the cone; negative: none.
+/// @param nearest_item the nearest item in the cone; negative if the cone is empty.
 expert::ActionSet harmfulActions(const core::Request& request, int nearest_item, bool frame_changed) {
   using core::Action;
   if (nearest_item >= 0) {
@@ -51,7 +51,7 @@ model::Sample sampleOf(const LabelledRequest& labelled, const core::FrameStack& 
   return sample;
 }
 
-/// What the policy sees after one or two COLLECTs that have changed nothing.
+/// The frames that the policy sees after one or two failed COLLECTs.
 core::FrameStack afterFailedCollects(const core::FrameStack& frames, int collects) {
   return {frames[0], frames[0], collects == 1 ? frames[1] : frames[0]};
 }

@@ -24,7 +24,7 @@ constexpr char kWorld[] = "session.world";      // world::WorldOptions as YAML
 constexpr char kElapsed[] = "session.elapsed_sec";
 constexpr char kCurve[] = "session.curve";  // curve.csv
 
-/// The options that decide the weights, as YAML: the others have their defaults.
+/// The options that determine the weights, as YAML. The others have their defaults.
 std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
@@ -32,7 +32,7 @@ std::string learningOptions(SessionOptions options) {
   return options.options().toYaml();
 }
 
-/// What must be the same when a session is resumed: YAML texts by their metadata keys.
+/// The settings that must be the same when a session is resumed: YAML texts by their metadata keys.
 std::array<std::pair<const char*, std::string>, 3> settings(const SessionOptions& options, sim::Task task,
                                                             world::WorldOptions world) {
   return {{{kOptions, learningOptions(options)}, {kTask, task.options().toYaml()}, {kWorld, world.options().toYaml()}}};
@@ -44,7 +44,7 @@ Settings parseSettings(const std::string& yaml, const std::string& source) {
   try {
     return YAML::Load(yaml).as<Settings>();
   } catch (const YAML::Exception& error) {
-    throw core::Error(source + ": its settings can't be read (" + error.msg + "); the file is damaged");
+    throw core::Error(source + ": its settings cannot be read (" + error.msg + "); the file is damaged");
   }
 }
 
@@ -78,12 +78,13 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
   if (options_.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) + " is that of the held-out episodes; take another");
+    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
+                      " is the seed of the held-out episodes; choose another");
   }
   if (options_.policy.image_size != world_->options.image_size) {
     throw core::Error("image_size: the policy's is " + std::to_string(options_.policy.image_size) +
-                      " but the world draws " + std::to_string(world_->options.image_size) +
-                      " pixels; set both to the same");
+                      " px and the world's is " + std::to_string(world_->options.image_size) +
+                      " px; set both to the same value");
   }
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);

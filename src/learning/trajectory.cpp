@@ -82,11 +82,11 @@ LabelledRequest TrajectoryRecorder::label(const sim::EpisodeState& state, const 
 
 expert::PanDirection TrajectoryRecorder::panDirection() const { return expert::panDirectionOver(latest_pan_); }
 
+/// Labels the policy's own request, then others that are possible in this scene. Each of these requests 1 to requested_
+/// of the instances that are left. If the frame has not changed, only the policy's own request is labelled: with
+/// another request the policy would have acted differently, and an unchanged frame after COLLECT must always mean that
+/// it failed.
 /// @param moved whether the frame has changed.
-///
-/// The policy's own request, then others that this scene could have had: each asks for 1 to requested_ of the instances
-/// that are left. Where the frame has not changed, only the policy's own: with another request it would have acted
-/// otherwise, and an unchanged frame after COLLECT must always mean that it failed.
 std::vector<LabelledRequest> TrajectoryRecorder::labelRequests(const sim::EpisodeState& state, bool moved) const {
   constexpr int kDraws = 2 * kMaxRequestsPerFrame;  // some draws repeat a request
   std::vector<LabelledRequest> labelled{label(state, state.request)};

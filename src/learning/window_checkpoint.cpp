@@ -67,8 +67,8 @@ std::deque<Trajectory> restoreWindow(const nn::WeightsFile& file, const std::str
                                 std::make_move_iterator(trajectories.end()));
   if (checksums(window) != sums) {
     throw core::Error(source +
-                      ": the replayed episodes differ from the saved ones: the URDF, the meshes or the program have "
-                      "changed, or the simulator's machine has others; restore them, or start another session");
+                      ": the replayed episodes differ from the saved ones; the URDF, the meshes or the program have "
+                      "changed, or differ on the simulator's machine; restore them or start a new session");
   }
   return window;
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPersistence = 16;  // steps, on average
 
-/// The latest step up to this one at which the random number was drawn anew.
+/// The latest step, up to this one, at which a new random number was drawn.
 std::uint32_t persistentDraw(std::uint64_t seed, std::uint64_t episode, std::uint32_t step) {
   while (step > 0 && core::Random(seed, {core::kPersistenceStream, episode, step}).below(kPersistence) != 0) --step;
   return step;
@@ -39,7 +39,7 @@ core::Action chooseAction(const Eigen::Ref<const Eigen::Matrix<float, 1, core::k
     left -= probabilities[action];
     if (left < 0) return core::kAllActions[action];
   }
-  // Rounding left a remainder.
+  // Reached if the probabilities add up to less than 1 by rounding.
   return core::kAllActions[likeliest];
 }
 

@@ -42,7 +42,7 @@ std::string actionsText() {
   return names.dump();
 }
 
-/// Keys of the metadata that are options of the policy. How to compute is not among them.
+/// The policy options that are metadata keys. Options of the computation, such as precision, are not stored.
 std::vector<std::string> storedOptions(const PolicyKind& kind) {
   std::vector<std::string> keys = kind.options;
   keys.insert(keys.begin(), "kind");
@@ -50,10 +50,10 @@ std::vector<std::string> storedOptions(const PolicyKind& kind) {
   return keys;
 }
 
-/// The options that a file may hold: a user's, and the field of view.
+/// The options that a file may have: those of PolicyOptions, and the field of view.
 core::OptionSet fileOptions(PolicyOptions& options) {
   core::OptionSet set = options.options();
-  set.add(kFieldOfView, options.horizontal_fov_deg, 1.0, 179.0, "degrees", "Horizontal field of view of the frames.");
+  set.add(kFieldOfView, options.horizontal_fov_deg, 1.0, 179.0, "degrees", "horizontal field of view of the frames");
   return set;
 }
 
@@ -70,8 +70,8 @@ void checkMetadata(const nn::WeightsFile& file, const std::string& source) {
   }
   if (file.metadata.count(kFieldOfView) == 0) {
     throw core::Error(source + ": metadata '" + kFieldOfView +
-                      "' is missing: the horizontal field of view [degrees] of the frames that the policy was trained "
-                      "on, to which a camera's images are cropped");
+                      "' is missing; it is the horizontal field of view [degrees] of the training frames, and a "
+                      "camera's images are cropped to it");
   }
 }
 
@@ -111,7 +111,7 @@ void loadTensors(const nn::WeightsFile& file, const std::string& source, const s
   }
 }
 
-/// A variance below 0 would make NaNs of every image.
+/// A variance below 0 would turn every output into NaN.
 void checkVariances(const nn::Parameters& parameters, const std::string& source) {
   for (const nn::TensorSlice& slice : parameters.bufferSlices()) {
     if (slice.name.find("running_var") == std::string::npos) continue;

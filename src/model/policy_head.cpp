@@ -38,7 +38,7 @@ double PolicyHead::forward(const nn::Matrix& features, const SampleBatch& batch,
 void PolicyHead::backward(const nn::Matrix& features, nn::Matrix& dfeatures) {
   output_.backward(activations_, dlogits_, rows_, &dactivations_);
   dropout_.backward(dactivations_, rows_);
-  // A dropped unit's activation is 0 too, and its gradient with it.
+  // The activation of a dropped unit is 0, too, so this also clears its gradient.
   dactivations_.topRows(rows_) = (activations_.topRows(rows_).array() > 0.f).select(dactivations_.topRows(rows_), 0.f);
   hidden_.backward(features, dactivations_, rows_, &dfeatures);
 }

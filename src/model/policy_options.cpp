@@ -8,7 +8,7 @@ namespace early_fusion::model {
 
 namespace {
 
-constexpr int kChannelsStep = 16;  // the widest register's floats
+constexpr int kChannelsStep = 16;  // the number of floats in the widest register
 
 }  // namespace
 
@@ -16,13 +16,13 @@ core::OptionSet PolicyOptions::options() {
   core::OptionSet set("policy");
   set.addChoice("kind", kind, policyKindNames(), "how the goal reaches the network");
   set.addMultiple("channels", channels, kChannelsStep, kChannelsStep, kMaxChannels, "",
-                  "of every block, of the hidden layer and of the goal's embedding");
+                  "width of every block, of the hidden layer and of the goal's embedding");
   set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
-          "the block whose output the goal is joined to; 0 joins it to the image itself");
-  set.add("dropout", dropout, 0.0, 0.95, "", "share of the hidden layer's units that are dropped in training");
+          "the goal joins the output of this block; 0: the frame stack itself");
+  set.add("dropout", dropout, 0.0, 0.95, "", "share of the hidden units that are dropped in a training step");
   core::addImageSize(set, "image_size", image_size, "edge of the square frames that the policy sees");
   set.addChoice("precision", precision, precisionNames(),
-                "what convolutions compute in; auto: bf16 where the processor computes faster in it");
+                "arithmetic of the convolutions; auto: bf16 if the processor computes faster in it, else f32");
   return set;
 }
 

@@ -9,7 +9,8 @@ namespace early_fusion::model {
 
 void countItems(const Observation& observation, std::size_t index, int items, float* counts) {
   const std::string where = "observation " + std::to_string(index);
-  if (observation.request == nullptr) throw core::Error(where + " has no request; give an empty one for nothing");
+  if (observation.request == nullptr)
+    throw core::Error(where + " has no request; use an empty request to request nothing");
   std::fill(counts, counts + items, 0.f);
   for (int item : *observation.request) {
     if (item < 0 || item >= items) {

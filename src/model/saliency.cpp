@@ -14,8 +14,7 @@ constexpr float kStrongestTint = 0.6f;
 
 using Frames = std::array<std::vector<std::uint8_t>, core::kStackedFrames>;
 
-/// Paints cell (row, column) of the grid grey, with a margin of half a cell, so that parts of an object do not remain
-/// at the cell's edge.
+/// Paints cell (row, column) of the grid grey. A margin of half a cell covers parts of objects at the cell's edge.
 void paint(std::vector<std::uint8_t>& frame, int size, int grid, int row, int column) {
   const int margin = size / grid / 2;
   const int left = std::max(0, column * size / grid - margin);

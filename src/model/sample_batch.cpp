@@ -45,7 +45,7 @@ void SampleBatch::assign(const std::vector<Sample>& samples) {
     weight_sum += sample.weight;
   }
   frame_stacks_.first_goal.push_back(rows_);
-  if (weight_sum <= 0) throw core::Error("all samples of a training step have weight 0; one at least must have more");
+  if (weight_sum <= 0) throw core::Error("all samples of a training step have weight 0; one must have a positive one");
 }
 
 }  // namespace early_fusion::model

@@ -14,8 +14,8 @@ namespace early_fusion::model {
 
 namespace {
 
-/// Images run in parallel, each from end to end of a block in its core's cache.
-/// @tparam T float or bfloat16, in which maps are held and convolutions computed.
+/// Images run in parallel. One thread takes an image through a whole block, within its core's cache.
+/// @tparam T float or bfloat16, the type of maps and convolutions.
 template <class T>
 class BlockTrunk : public VisionTrunk {
  public:
@@ -38,7 +38,7 @@ class BlockTrunk : public VisionTrunk {
   void predict(int thread, const core::FrameStack& frames, const float* goal, float* map) override;
 
  private:
-  /// What passes from layer to layer, one set a thread.
+  /// The maps between layers, one set for each thread.
   struct Scratch {
     nn::AlignedBuffer<T> input;        // (H,W,C in)
     nn::AlignedBuffer<T> output;       // (H/2,W/2,C out)
@@ -48,7 +48,7 @@ class BlockTrunk : public VisionTrunk {
   int pixels() const { return shape_.image_size * shape_.image_size; }
   int positions() const { return shape_.mapEdge() * shape_.mapEdge(); }
 
-  // Convolutions and pooled maps of a block; convolution c makes the maps [firstMap(c), firstMap(c + 1)).
+  // Convolutions and pooled maps of a block. The maps of convolution c are [firstMap(c), firstMap(c + 1)).
   int convolutionCount(const FrameStackBatch& batch, int block) const {
     return block <= fusion_block_ ? batch.frameStackCount() : batch.goalCount();
   }
@@ -61,13 +61,13 @@ class BlockTrunk : public VisionTrunk {
 
   const T* blockInput(const FrameStackBatch& batch, int block, int convolution, Scratch& scratch);
   void backwardBlock(int block, const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
-  /// How what comes before a block must be laid out for predict(); `block` may be the one after the last.
+  /// The layout of a block's input in predict(). `block` may be one past the last.
   nn::MapLayout predictionLayout(int block) const;
   void stackOnAllThreads(const core::FrameStack& frames, T* x);
   void writeMap(const T* channels_last, float* map) const;
 
   VisionTrunkShape shape_;
-  int fusion_block_;  // kBlocks where no goal joins: all blocks come before it
+  int fusion_block_;  // kBlocks if no goal joins
   int threads_;
   nn::Normalisation normalisation_ = nn::Normalisation::kBatch;
   std::vector<nn::ConvBlock<T>> blocks_;

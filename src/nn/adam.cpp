@@ -13,7 +13,7 @@ void Adam::step(Eigen::VectorXf& values, const Eigen::VectorXf& gradients, doubl
   ++step_count_;
   const double correction1 = 1.0 - std::pow(options_.beta1, static_cast<double>(step_count_));
   const double correction2 = 1.0 - std::pow(options_.beta2, static_cast<double>(step_count_));
-  // 1 - beta is rounded from double: taken from float(beta) it would be off by 3e-5 of itself at beta2 = 0.999.
+  // 1 - beta is computed in double. From float(beta) its relative error would be 3e-5 at beta2 = 0.999.
   const float beta1 = static_cast<float>(options_.beta1);
   const float beta2 = static_cast<float>(options_.beta2);
   const float rest1 = static_cast<float>(1.0 - options_.beta1);

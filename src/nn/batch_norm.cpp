@@ -55,7 +55,7 @@ void BatchNorm::finishForward(int images, int positions, Normalisation normalisa
       square_sum += forward_sums_(i, channels_ + c);
     }
     const double mean = sum / count;
-    // Not std::max(0, ...), which would make a variance of a NaN.
+    // std::max(0, ...) would turn a NaN into a valid variance.
     double variance = square_sum / count - mean * mean;
     if (variance < 0) variance = 0;
     const double unbiased = variance * count / std::max(count - 1, 1.0);
@@ -92,8 +92,8 @@ NormGradient BatchNorm::finishBackward(int images, int positions) {
       sum += backward_sums_(i, c);
       product_sum += backward_sums_(i, channels_ + c);
     }
-    // With xhat = (z - mean) * r, of the batch, and r' of what it was normalised with:
-    // dz = weight * r' * (dx - mean(dx) - xhat * mean(dx * xhat)).
+    // dz = weight * r' * (dx - mean(dx) - xhat * mean(dx * xhat)) with xhat = (z - mean) * r. mean and r are those of
+    // the batch; r' is that of the statistics that normalised the batch.
     const double r = batch_inverse_deviation_[c];
     const double gain = weight[c] * inverse_deviation_[c];
     const double slope = -gain * r * r * (product_sum - batch_mean_[c] * sum) / count;

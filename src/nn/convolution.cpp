@@ -34,7 +34,7 @@ Type elementType<bfloat16>() {
   return Type::bf16;
 }
 
-/// The library divides a primitive's work for the number of threads that is set when it is made.
+/// oneDNN divides a primitive's work for the number of threads that is set when the primitive is created.
 class ScopedThreadCount {
  public:
   explicit ScopedThreadCount(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
@@ -46,7 +46,7 @@ class ScopedThreadCount {
   int before_;
 };
 
-/// A primitive bound to memory: changing an address and running it allocates nothing.
+/// A primitive that is bound to memory. Changing an address and running it allocates nothing.
 class Call {
  public:
   Call() = default;
@@ -70,7 +70,7 @@ class Call {
   std::vector<dnnl_exec_arg_t> arguments_;
 };
 
-// With fewer the library's direct kernels are as fast as Winograd's.
+// With fewer channels, oneDNN's direct kernels are as fast as Winograd's.
 constexpr int kFewestWinogradChannels = 64;
 
 bool processorHas(dnnl::cpu_isa isa) {
@@ -169,7 +169,7 @@ class Convolution<T>::Implementation {
 
   Forward direct() const { return choose(dnnl::algorithm::convolution_direct, Tag::nhwc, false); }
 
-  /// Empty where the library has no kernel for this processor.
+  /// Empty if oneDNN has no kernel for this processor.
   Forward winograd() const {
     static_assert(kLanes == 16);
     return choose(dnnl::algorithm::convolution_winograd, Tag::nChw16c, true);
@@ -240,7 +240,7 @@ class Convolution<T>::Implementation {
   dnnl::primitive_attr attributes_;
   dnnl::memory forward_weights_, predict_weights_, wide_weights_, backward_weights_;
   std::vector<AlignedBuffer<std::uint8_t>> scratch_;
-  // predict_ is empty where prediction is forward_, wide_predict_ with one thread.
+  // predict_ is empty if prediction uses forward_. wide_predict_ is empty if there is one thread.
   std::vector<Call> forward_, predict_, wide_predict_, weights_gradient_, backward_input_;
 };
 

@@ -7,13 +7,13 @@ namespace early_fusion::nn {
 
 namespace {
 
-constexpr int kRun = 128;  // pixels at a time, whose numbers stay in the innermost cache
+constexpr int kRun = 128;  // pixels at a time; their numbers fit in the first-level cache
 
 constexpr std::uint8_t kBlack[3 * kRun] = {};
 
 void store(int difference, float& number) { number = static_cast<float>(difference); }
 
-/// A difference of bytes has no more significant bits than a bfloat16: nothing is rounded.
+/// A difference of bytes has no more significant bits than a bfloat16, so nothing is rounded.
 void store(int difference, bfloat16& number) {
   const auto exact = static_cast<float>(difference);
   std::uint32_t bits;
@@ -29,8 +29,8 @@ inline void interleavePixel(const T (&rows)[core::kStackedFrames][3 * kRun + 1],
   }
 }
 
-/// Lays `count` pixels of three frames, (count, 3) each, side by side. Four numbers are copied at a time, one register;
-/// the fourth is overwritten by what comes next, so the last pixel is copied exactly.
+/// Interleaves `count` pixels of three frames, (count, 3) each. A copy moves four numbers, the size of a register. The
+/// next copy overwrites the fourth number, so the last pixel is copied separately.
 template <class T>
 void interleave(const T (&rows)[core::kStackedFrames][3 * kRun + 1], int count, T* x) {
   for (int p = 0; p < count - 1; ++p) interleavePixel<T, 4>(rows, p, x);

@@ -9,7 +9,7 @@ namespace {
 
 using ConstMap = Eigen::Map<const Matrix>;
 
-/// Work is cut at fixed places, so that the number of threads changes no bit.
+/// The work is divided at fixed places, so that the bits do not depend on the number of threads.
 constexpr int kSlices = 16;
 
 int sliceStart(int slice, int size) { return static_cast<int>(std::int64_t(slice) * size / kSlices); }

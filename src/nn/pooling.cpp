@@ -6,7 +6,7 @@ namespace early_fusion::nn {
 
 namespace {
 
-/// The maximum of a 2x2 window in each channel, and which of the four it is; the first where several are.
+/// The maximum of a 2x2 window in each channel, and its place in the window; the first place if several are equal.
 struct Max {
   Lanes value;
   IntLanes index;
@@ -23,7 +23,7 @@ inline Max maxOf(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d)
   return best;
 }
 
-/// The window at (row, column) of a map whose rows and columns may be the first or the last, channels [c, c + kLanes).
+/// The window at (row, column), channels [c, c + kLanes). It may lie at a border of the map.
 template <class T>
 Max borderWindow(const MapShape& shape, const T* y, const float* bias, int row, int column, int c) {
   Lanes v[4];
@@ -60,10 +60,10 @@ inline void poolRow(const MapShape& shape, const T* y, const float* bias, int ro
   if (columns > 1) sink(columns - 1, borderWindow(shape, y, bias, row, columns - 1, c));
 }
 
-/// Not max(v, 0): a NaN must not vanish.
+/// max(v, 0) would remove a NaN.
 inline Lanes relu(const Lanes& v) { return v < 0.f ? Lanes{} : v; }
 
-/// What T makes of v, so that statistics are those of the numbers that are stored.
+/// v rounded to T, so that statistics are those of the stored numbers.
 inline Lanes rounded(const Lanes& v, const float*) { return v; }
 inline Lanes rounded(const Lanes&, const bfloat16* stored) { return loadLanes(stored); }
 
@@ -77,8 +77,8 @@ void poolForward(const MapShape& shape, const T* y, const float* bias, T* z, std
   for (int row = 0; row < shape.height / 2; ++row) {
     for (int c = 0; c < channels; c += kLanes) {
       const std::size_t start = std::size_t(row) * columns * channels + c;
-      // Where the mean is far from 0, sums of squares would leave little of the variance in float: sums are of what
-      // differs from a number amid the row.
+      // If the mean is far from 0, float sums of squares lose most digits of the variance. So the sums are of
+      // differences from a number in the middle of the row.
       const Lanes pivot = relu(borderWindow(shape, y, bias, row, columns / 2, c).value);
       Lanes sum{}, square_sum{};
       poolRow(shape, y, bias, row, c, [&](int column, const Max& best) {
@@ -126,7 +126,7 @@ void normalise(const T* z, int positions, int channels, const float* scale, cons
 
 template <class T>
 void sumGradients(const T* dx, const T* z, int positions, int channels, double* sums) {
-  constexpr int kRun = 64;  // summed in float before it goes to a double
+  constexpr int kRun = 64;  // numbers that are summed in float before the sum is added in double
   std::memset(sums, 0, 2 * sizeof(double) * channels);
   for (int c = 0; c < channels; c += kLanes) {
     for (int start = 0; start < positions; start += kRun) {
@@ -154,7 +154,7 @@ inline void addBorderWindow(const MapShape& shape, const Lanes& dz, const IntLan
   }
 }
 
-/// Gives a window's gradient to the pixel that was its greatest and 0 to the other three; or adds these.
+/// Writes a window's gradient to the pixel that was the maximum and 0 to the other three, or adds these values.
 template <bool kAdd, class T>
 inline void writeWindow(const Lanes& dz, const std::uint8_t* choice, T* top, T* bottom, int channels) {
   if constexpr (kAdd) {
@@ -171,7 +171,7 @@ inline void writeWindow(const Lanes& dz, const std::uint8_t* choice, T* top, T* 
   }
 }
 
-/// One pooled row of poolBackward(), channels [c, c + kLanes); adds to sums, one for each border case.
+/// One pooled row of poolBackward(), channels [c, c + kLanes). Adds to `sums`, which has one sum for each border case.
 template <bool kAdd, class T>
 inline void poolRowBackward(const MapShape& shape, const T* dx, const T* z, const std::uint8_t* choice,
                             const NormGradient& norm, int row, int c, T* dy, Lanes* sums) {

@@ -8,7 +8,7 @@ namespace early_fusion::nn {
 
 namespace {
 
-/// log sum_k exp(logits(row, k)), over all classes but `without`.
+/// log sum_k exp(logits(row, k)) over all classes except `without`.
 double logSumExp(const Matrix& logits, int row, Eigen::Index without = -1) {
   double max_logit = -std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < logits.cols(); ++k) {
@@ -58,7 +58,7 @@ double unlikelihoodLoss(const Matrix& logits, const Matrix& unlikelihoods, const
   for (int i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < classes; ++k) {
       if (unlikelihoods(i, k) == 0) continue;
-      // 1 - p_k = 1 / (1 + exp(odds)), which doesn't cancel where p_k is next to 1.
+      // 1 - p_k = 1 / (1 + exp(odds)). This form is accurate also if p_k is close to 1.
       const double others = logSumExp(logits, i, k);
       const double odds = logits(i, k) - others;
       const double weight = weights[i] / weight_sum * unlikelihoods(i, k);

@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kTaps = 9;
 
-/// Whether the tap reaches into the image from a pixel of the border case, along one axis.
+/// Whether the tap lies inside the image for a pixel of the border case, along one axis.
 bool reaches(int tap, int border) { return !(border == 0 && tap == 0) && !(border == 2 && tap == 2); }
 
 bool reachesBoth(int tap, int border) { return reaches(tap / 3, border / 3) && reaches(tap % 3, border % 3); }

@@ -26,7 +26,7 @@ const std::map<std::string, std::uint64_t>& typeSizes() {
   return sizes;
 }
 
-/// Where a tensor's bytes lie, from the end of the header.
+/// The place of a tensor's bytes, counted from the end of the header.
 struct Extent {
   std::uint64_t begin;
   std::uint64_t end;
@@ -57,7 +57,7 @@ std::uint64_t headerLength(const std::string& bytes, const std::string& source) 
 }
 
 Json parseHeader(const std::string& text, const std::string& source) {
-  // A name that stands twice would silently lose a tensor.
+  // If a name is listed twice, nlohmann::json drops one tensor without an error.
   std::vector<std::set<std::string>> keys;
   const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
@@ -81,7 +81,7 @@ std::uint64_t unsignedNumber(const Json& value, const std::string& where, const 
   return value.get<std::uint64_t>();
 }
 
-/// The bytes that dtype and shape ask for, with their overflow caught.
+/// The number of bytes by dtype and shape. @throws Error if it overflows.
 std::uint64_t byteCount(const StoredTensor& tensor, const std::string& where) {
   const auto type = typeSizes().find(tensor.dtype);
   if (type == typeSizes().end()) fail(where, "unknown dtype '" + tensor.dtype + "'");
@@ -94,7 +94,7 @@ std::uint64_t byteCount(const StoredTensor& tensor, const std::string& where) {
 
 StoredTensor parseEntry(const Json& entry, const std::string& where, Extent& extent) {
   for (const char* key : {"dtype", "shape", "data_offsets"}) {
-    if (!entry.is_object() || !entry.contains(key)) fail(where, std::string("the header gives no '") + key + "'");
+    if (!entry.is_object() || !entry.contains(key)) fail(where, std::string("the header has no '") + key + "'");
   }
   StoredTensor tensor;
   if (!entry["dtype"].is_string()) fail(where, "dtype must be a text, not " + entry["dtype"].dump());
@@ -121,7 +121,7 @@ StoredTensor parseEntry(const Json& entry, const std::string& where, Extent& ext
   return tensor;
 }
 
-/// Tensors must fill the file from the header to its end, without gaps and without sharing a byte.
+/// Tensors must fill the file from the header to its end, without gaps and without overlaps.
 void checkLayout(std::vector<Extent> extents, std::uint64_t size, const std::string& source) {
   std::sort(extents.begin(), extents.end(), [](const Extent& a, const Extent& b) {
     return std::tie(a.begin, a.end, a.name) < std::tie(b.begin, b.end, b.name);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kPlanes = 5;
 
-/// Zero on the plane, positive on the side that stays.
+/// Zero on the plane, positive on the side that is kept.
 float distance(const ClipVertex& vertex, int plane) {
   const auto& v = vertex.value;
   switch (plane) {
@@ -25,8 +25,8 @@ float distance(const ClipVertex& vertex, int plane) {
   }
 }
 
-/// Always computed from the inside to the outside, whichever way round the polygon goes: no gap opens between
-/// neighbours.
+/// Always computed from the inside to the outside, for both orders of the corners. So there is no gap between
+/// neighbouring triangles.
 ClipVertex crossing(const ClipVertex& inside, const ClipVertex& outside, float inside_distance,
                     float outside_distance) {
   const float t = inside_distance / (inside_distance - outside_distance);

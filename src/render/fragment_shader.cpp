@@ -11,16 +11,17 @@ using ThreeLanes = std::array<FloatLanes, 3>;
 using HalfLanes __attribute__((vector_size(4 * kLanes))) = std::uint16_t;
 
 constexpr float kAmbient = 0.40f;
-constexpr float kAmbientFromAbove = 0.08f;  // more on what faces up, less on what faces down
+constexpr float kAmbientFromAbove =
+    0.08f;  // is added on surfaces that face up and subtracted on surfaces that face down
 constexpr float kDiffuse = 0.72f;
 constexpr int kGlossDoublings = 5;  // exponent 2^5 of the highlight
-constexpr float kTiny = 1e-20f;     // keeps the length of a vanishing normal from being a divisor of zero
+constexpr float kTiny = 1e-20f;     // avoids a division by zero if a normal has length 0
 constexpr int kSumBits = 10;
 constexpr std::int32_t kBackground = 168 | 172 << kSumBits | 176 << (2 * kSumBits);
 constexpr int kMaxLevel = 30;
 constexpr int kFractionBits = 4;  // of a texel
 
-/// By coverage: how many samples, and their middle from the pixel's top left corner [subsamples].
+/// By coverage: the number of samples, and their centre, from the pixel's top left corner [subsamples].
 struct CoverageTable {
   std::int32_t count[16] = {};
   float middle_x[16] = {}, middle_y[16] = {};
@@ -50,13 +51,14 @@ ThreeLanes normalized(const ThreeLanes& a) {
   return {a[0] * inverse, a[1] * inverse, a[2] * inverse};
 }
 
-/// The mip level at which a texel is about as large as a pixel: half the logarithm of their areas' ratio, rounded.
+/// The mip level at which a texel is about as large as a pixel: half the binary logarithm of the ratio of their areas,
+/// rounded.
 IntLanes mipLevel(FloatLanes texels_per_pixel) {
   const IntLanes logarithm = (bitsOf(texels_per_pixel) >> 23) - 127;
   return lowest(highest((logarithm + 1) >> 1, IntLanes{}), allLanes(kMaxLevel));
 }
 
-/// Bilinear samples of textures that wrap, as two channels a lane, eight bits and eight of fraction each.
+/// Bilinear samples of wrapping textures. Each lane has two channels with eight bits and eight bits of fraction.
 struct TwoColors {
   IntLanes red_blue, green_alpha;
 };
@@ -67,7 +69,7 @@ TwoColors sampleTextures(const std::uint32_t* texels, IntLanes first_texel, IntL
                  y = floorToInt(v * toFloat(size * kOne)) - kOne / 2;
   const IntLanes x0 = x >> kFractionBits, y0 = y >> kFractionBits;
   const IntLanes right = x & (kOne - 1), down = y & (kOne - 1), mask = size - 1;
-  // The smaller levels lie before this one: 1 + 4 + 16 + ... texels.
+  // The smaller levels come before this one: 1 + 4 + 16 + ... texels.
   const IntLanes level = first_texel + ((size * size - 1) & 0x55555555);
   const IntLanes column[2] = {x0 & mask, (x0 + 1) & mask};
   const IntLanes row[2] = {level + (y0 & mask) * size, level + ((y0 + 1) & mask) * size};
@@ -115,14 +117,14 @@ void FragmentShader::shade(const Viewpoint& viewpoint, const MeshDrawer& drawer,
   std::fill(sums_.begin(), sums_.end(), 0u);
   addFragments(samples);
   flush();
-  for (int i = count_; i < kLanes; ++i) id_[i] = 0;  // a triangle of an earlier image may be gone
+  for (int i = count_; i < kLanes; ++i) id_[i] = 0;  // an id of an earlier image may be out of range
   shadeLanes(0, count_);
   count_ = 0;
   writeMeans(image);
 }
 
-/// One fragment for each of the different triangles that a pixel's four samples see. Pixels that see one triangle are
-/// told from the others first, a block at a time.
+/// Makes one fragment for each triangle that is visible in a pixel's four samples. First separates the pixels with one
+/// triangle from the others, block by block.
 void FragmentShader::addFragments(const SampleBuffer& samples) {
   constexpr int kPixels = kLanes / 4;
   constexpr int kAcross = SampleBuffer::kPixelsAcross, kDown = SampleBuffer::kPixelsDown;
@@ -197,7 +199,7 @@ FragmentShader::Attributes FragmentShader::interpolate(const std::int32_t* id, I
   const FloatLanes x = toFloat(pixel_x * (2 * kSubsamples)) + gather<FloatLanes>(kCoverage.middle_x, coverage);
   const FloatLanes y = toFloat(pixel_y * (2 * kSubsamples)) + gather<FloatLanes>(kCoverage.middle_y, coverage);
   const FloatLanes zero{}, one = allLanes(1.f);
-  // Clamped, because the areas of a long sliver's parts are not exact.
+  // Clamped, because the barycentric coordinates of a long sliver are not exact.
   FloatLanes weight_b = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) * triangle[0];
   FloatLanes weight_c = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) * triangle[0];
   weight_b = lowest(highest(weight_b, zero), one);

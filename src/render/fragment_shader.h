@@ -12,31 +12,32 @@
 
 namespace early_fusion::render {
 
-/// Where the images are taken from.
+/// The camera of an image.
 struct Viewpoint {
   RenderPose world_from_camera;
   float focal_length;  ///< [subsamples]
   float centre;        ///< x and y of the principal point [subsamples]
 };
 
-/// Colours the parts of pixels that one triangle covers, "fragments", several at a time, and adds them up to pixels.
+/// Shades fragments, several at a time, and adds them up to pixels. A fragment is the part of a pixel that one triangle
+/// covers.
 class FragmentShader {
  public:
   FragmentShader(const RenderAssets& assets, const ShadowMap& shadow_map, int image_size);
 
-  /// Colours every pixel with the mean of its four samples, which show triangles of `drawer`, or none (id 0).
+  /// Sets every pixel to the mean of its four samples, which show triangles of `drawer` or nothing (id 0).
   void shade(const Viewpoint& viewpoint, const MeshDrawer& drawer, const SampleBuffer& samples, core::Image& image);
 
  private:
   static constexpr int kCapacity = 256;
 
-  /// A pixel and which of its samples a fragment has, in one number. Coverage: bit 0 is the sample at the top left, 1
-  /// at the top right, 2 and 3 are those below.
+  /// A pixel and the coverage of a fragment, in one number. Coverage bits: 0 is the sample at the top left, 1 at the
+  /// top right, 2 at the bottom left, 3 at the bottom right.
   static constexpr int kCoverageBits = 4, kColumnBits = 12;
   static_assert(kMaxScreenSize <= 1 << kColumnBits);
   static constexpr std::int32_t place(int x, int y) { return y << (kCoverageBits + kColumnBits) | x << kCoverageBits; }
 
-  /// What is interpolated over a triangle, and what is the same all over it.
+  /// Interpolated values, and values that are constant over a triangle.
   struct Attributes {
     FloatLanes x, y;     ///< on the screen [subsamples]
     FloatLanes w, u, v;  ///< depth [m] and texture coordinates
@@ -48,7 +49,7 @@ class FragmentShader {
   void addFragments(const SampleBuffer& samples);
   void addMixed(const std::int32_t* ids, std::int32_t place);
 
-  /// Without a branch on `really`, which no processor can foresee.
+  /// Has no branch on `really`, because the processor could not predict it.
   void addIf(bool really, std::int32_t id, std::int32_t place_and_coverage) {
     id_[count_] = id;
     place_[count_] = place_and_coverage;
@@ -60,7 +61,7 @@ class FragmentShader {
     if (count_ + count > kCapacity) flush();
   }
 
-  /// Shades the fragments in hand, but for the last few that don't fill an instruction.
+  /// Shades the current fragments, except the last few that do not fill a vector.
   void flush();
   void shadeLanes(int first, int lanes);
   void writeMeans(core::Image& image) const;
@@ -74,14 +75,14 @@ class FragmentShader {
   const ShadingVertex* vertices_ = nullptr;
   const VisibleTriangle* triangles_ = nullptr;
 
-  // Fragments in hand, one element each; what lies beyond count_ is left from earlier ones.
+  // The current fragments, one element each. Elements from count_ on are left from earlier fragments.
   int count_ = 0;
   alignas(64) std::int32_t id_[kCapacity] = {};
   alignas(64) std::int32_t place_[kCapacity] = {};
-  // Pixels of a row of blocks that see several triangles: where their ids begin, and their places.
+  // The pixels of a row of blocks that show several triangles: the start of their ids, and their positions.
   std::vector<std::int32_t> mixed_offset_, mixed_place_;
 
-  // Of each pixel: the sum over its samples, ten bits a channel, red lowest.
+  // For each pixel: the sum over its samples, with ten bits for each channel, red in the lowest bits.
   std::vector<std::uint32_t> sums_;
 };
 

@@ -184,8 +184,8 @@ TriangleCorners MeshDrawer::gatherCorners(const Triangles& triangles, int batch)
 }
 
 void MeshDrawer::keep(const Triangles& triangles, int batch, std::uint32_t accepted, const TriangleCorners& corners) {
-  // With perspective, depth is 1 / w. The ratio of a triangle's area in its texture to that on the screen, at a point
-  // of depth w, is this times w^3: the determinant of a projective map.
+  // With perspective, depth is 1 / w. The ratio of a triangle's area in its texture to its area on the screen, at a
+  // point with depth w, is this times w^3 (the determinant of a projective map).
   const FloatLanes texture_scale = triangles.uv_area[batch] * corners.depth[0] * corners.depth[1] * corners.depth[2] *
                                    batch_.inverse_area * kSubsamplesPerPixel;
   for (; accepted != 0; accepted &= accepted - 1) {

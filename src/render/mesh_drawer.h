@@ -10,7 +10,8 @@
 
 namespace early_fusion::render {
 
-/// A vertex on the screen, with what is interpolated over its triangles: attributes / w are linear on the screen.
+/// A vertex on the screen, with attributes that are interpolated over its triangles. attribute / w is linear on the
+/// screen.
 struct alignas(32) ShadingVertex {
   float x, y;       ///< [subsamples]
   float inverse_w;  ///< [1 / m]
@@ -28,14 +29,15 @@ struct alignas(32) VisibleTriangle {
 };
 static_assert(sizeof(VisibleTriangle) == 8 * sizeof(float));
 
-/// Takes meshes through transformation, clipping, culling and set-up to the samples of a screen, and keeps what shading
-/// needs of them. Grows its memory with the first images, then keeps it.
+/// Transforms, clips, culls and sets up meshes, fills the samples of a screen, and keeps the data for shading. It
+/// allocates memory in the first images only.
 class MeshDrawer {
  public:
-  /// Forgets the triangles drawn so far. Their numbers, the ids of samples, begin at 1.
+  /// Removes all triangles. The numbers of triangles, which are the ids of samples, start at 1.
   void clear();
 
-  /// @param projection of the world. Without perspective, triangles are drawn from both sides and not kept for shading.
+  /// @param projection the projection of the world. Without perspective, both sides of triangles are drawn, and
+  /// triangles are not kept for shading.
   void draw(const RenderMesh& mesh, const RenderPose& world_from_mesh, const Projection& projection,
             SampleBuffer& buffer);
 
@@ -43,9 +45,9 @@ class MeshDrawer {
   const std::vector<VisibleTriangle>& triangles() const { return triangles_; }
 
  private:
-  /// Triangles of the mesh in hand: the mesh's own, or those that clipping left of them.
+  /// Triangles of the current mesh: the mesh's own, or the result of clipping them.
   struct Triangles {
-    std::array<const IntLanes*, 3> corner;  ///< into the vertices of the mesh in hand
+    std::array<const IntLanes*, 3> corner;  ///< indices into the vertices of the current mesh
     const FloatLanes* uv_area;
     const std::int32_t* material;
     int count;
@@ -61,19 +63,19 @@ class MeshDrawer {
   void keep(const Triangles& triangles, int batch, std::uint32_t accepted, const TriangleCorners& corners);
   void fill(const Triangles& triangles, const Projection& projection, SampleBuffer& buffer);
 
-  // Of the mesh in hand, one element a vertex.
+  // Of the current mesh, one element for each vertex.
   std::vector<IntLanes> screen_x_, screen_y_;         // [subsamples] from the top left corner
-  std::vector<FloatLanes> depth_;                     // as the depth buffer holds it
+  std::vector<FloatLanes> depth_;                     // as in the depth buffer
   std::vector<FloatLanes> clip_x_, clip_y_, clip_w_;  // before the division by w
   int mesh_vertices_ = 0;
-  // Of the mesh in hand, when it was clipped.
+  // Of the current mesh, if it was clipped.
   std::array<std::vector<IntLanes>, 3> clipped_corner_;
   std::vector<FloatLanes> clipped_uv_area_;
   std::vector<std::int32_t> clipped_material_;
   TriangleBatch batch_;  // the triangles being set up
   // Of the whole image.
   std::vector<ShadingVertex> vertices_;
-  int first_vertex_ = 0;  // of the mesh in hand
+  int first_vertex_ = 0;  // of the current mesh
   std::vector<VisibleTriangle> triangles_;
 };
 

@@ -63,7 +63,7 @@ Visibility visibility(const Projection& projection, const RenderMesh& mesh) {
     for (const float side : {-1.f, 1.f}) {
       const LinearForm towards_edge = side * *forms[axis];
       if (range(towards_edge + half_sizes[axis] * projection.w, mesh).high < 0.f) return Visibility::kOutside;
-      // A little less than the band, for the vertices' own rounding.
+      // A little less than the band, because vertices are rounded.
       safe = safe && range(towards_edge + 0.99f * kGuardBand * projection.w, mesh).low >= 0.f;
     }
   }

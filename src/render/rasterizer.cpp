@@ -106,7 +106,7 @@ class Rasterizer::Implementation {
   FragmentShader shader_;
   std::vector<world::ObjectPose> objects_;
   std::vector<ShadowMap::Caster> drawn_;
-  core::Image last_image_;  // empty where the objects have changed since
+  core::Image last_image_;  // empty if the objects have changed since
   Eigen::Isometry3d last_pose_ = Eigen::Isometry3d::Identity();
   const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());
 };

@@ -11,7 +11,7 @@ namespace early_fusion::render {
 
 namespace {
 
-/// Small enough to be culled well, large enough that whole lanes are filled.
+/// Small enough for effective culling, and large enough to fill whole lanes.
 constexpr std::size_t kClusterTriangles = 96;
 
 struct Triangle {
@@ -19,7 +19,7 @@ struct Triangle {
   std::int32_t material;
 };
 
-/// Many parts as one list of triangles.
+/// The triangles of many parts in one list.
 struct Soup {
   std::vector<world::Vertex> vertices;
   std::vector<Triangle> triangles;
@@ -90,7 +90,7 @@ void addMesh(Soup& soup, RenderAssets& assets, const world::TexturedMesh& mesh, 
 void setBox(RenderMesh& mesh, const Eigen::AlignedBox3f& box) {
   for (int axis = 0; axis < 3; ++axis) {
     mesh.box_centre[axis] = 0.5f * (box.min()[axis] + box.max()[axis]);
-    mesh.box_half_size[axis] = 0.5f * (box.max()[axis] - box.min()[axis]) + 1e-5f;  // more than the rounding
+    mesh.box_half_size[axis] = 0.5f * (box.max()[axis] - box.min()[axis]) + 1e-5f;  // larger than the rounding error
   }
 }
 
@@ -164,7 +164,7 @@ void addClusters(Soup& soup, Triangle* first, Triangle* last, std::vector<Render
 
 std::shared_ptr<const RenderAssets> makeRenderAssets(const world::World& world) {
   auto assets = std::make_shared<RenderAssets>();
-  assets->texels = {0};  // and a material for what has none
+  assets->texels = {0};  // and a material for parts without one
   assets->materials = {Material{}};
   const RenderPose identity = renderPose(Eigen::Isometry3d::Identity());
   for (int item = 0; item < world.objects.size(); ++item) {
@@ -195,7 +195,7 @@ RenderPose renderPose(const Eigen::Isometry3d& pose) {
 }
 
 std::shared_ptr<const RenderAssets> sharedRenderAssets(const world::World& world) {
-  // An address cannot be taken by another World while its entry is alive: who holds the assets holds the World.
+  // The assets keep their World alive, so another World cannot have its address while the entry is valid.
   static std::mutex mutex;
   static std::map<const world::World*, std::weak_ptr<const RenderAssets>> assets_of;
   const std::lock_guard<std::mutex> lock(mutex);

@@ -11,14 +11,14 @@
 
 namespace early_fusion::render {
 
-/// A texture with its mip levels, and how it shines.
+/// A texture with its mip levels, and its specular strength.
 struct alignas(16) Material {
   std::int32_t first_texel = 0;  ///< into RenderAssets::texels: levels from 1x1 up, row-major, 0xAABBGGRR
   std::int32_t size = 1;         ///< edge of the largest level [texels], a power of two
   float specular = 0.f;
 };
 
-/// A mesh as the rasterizer reads it: every coordinate an array of its own, padded to whole lanes.
+/// A mesh in the rasterizer's layout: one array for each coordinate, padded to whole lanes.
 struct RenderMesh {
   int vertex_count = 0;
   int triangle_count = 0;
@@ -32,8 +32,8 @@ struct RenderMesh {
   std::array<float, 3> box_half_size;           ///< [m]
 };
 
-/// A pose in single precision. Rounded to 2^-30, so that the last bits of its computation, which differ between
-/// instruction sets, don't reach the image.
+/// A pose in single precision, rounded to 2^-30. The rounding removes the last bits of its computation, which differ
+/// between instruction sets, so that images do not depend on them.
 struct RenderPose {
   float rotation[3][3];
   float translation[3];  ///< [m]
@@ -41,7 +41,7 @@ struct RenderPose {
 
 RenderPose renderPose(const Eigen::Isometry3d& pose);
 
-/// What the rasterizers of one World share: meshes, textures and materials. Immutable.
+/// Meshes, textures and materials that the rasterizers of one World share. Immutable.
 struct RenderAssets {
   std::vector<std::uint32_t> texels;
   std::vector<Material> materials;
@@ -49,8 +49,8 @@ struct RenderAssets {
   std::vector<RenderMesh> kitchen;  ///< in the world frame, cut into compact clusters that are culled one by one
 };
 
-/// The assets of `world`, which must outlive them: made by the first rasterizer of a World, then shared by the others
-/// for as long as one of them lives. Safe to call from any thread.
+/// The assets of `world`, which must outlive them. The first rasterizer of a World creates them, and the others share
+/// them. Safe to call from any thread.
 std::shared_ptr<const RenderAssets> sharedRenderAssets(const world::World& world);
 
 }  // namespace early_fusion::render

@@ -80,7 +80,8 @@ void SampleBuffer::fillBlocks(const TriangleBatch& batch, int lane, std::int32_t
   const FloatLanes low = allLanes(batch.depth_low[lane]), high = allLanes(batch.depth_high[lane]);
   for (int row = first_row; row <= last_row; ++row) {
     std::size_t block = static_cast<std::size_t>(row) * blocks_across_ + first_column;
-    // Depth is evaluated anew in every block, not summed up: a sum would depend on the number of lanes.
+    // Depth is evaluated in every block and not accumulated, because an accumulated sum would depend on the number of
+    // lanes.
     const FloatLanes row_depth = first_depth + depth_y * offset_y;
     FloatLanes x = offset_x;
     IntLanes e0 = edge[0], e1 = edge[1], e2 = edge[2];

@@ -7,8 +7,8 @@
 
 namespace early_fusion::render {
 
-/// Depth and triangle number of every sample of a screen. Samples lie in memory in blocks of kLanes; within a block the
-/// four samples of a pixel (2x2) are together, row by row.
+/// Depth and triangle number of every sample of a screen. Samples are stored in blocks of kLanes. Within a block, the
+/// four samples of a pixel (2x2) are neighbours, row by row.
 class SampleBuffer {
  public:
   static constexpr int kBlockWidth = kLanes == 4 ? 2 : 4;
@@ -25,7 +25,7 @@ class SampleBuffer {
   /// Block after block, from left to right and from top to bottom.
   const std::int32_t* ids() const { return reinterpret_cast<const std::int32_t*>(ids_.data()); }
 
-  /// Where pixel (x, y)'s four samples begin in ids().
+  /// The index of the first of pixel (x, y)'s four samples in ids().
   int pixelOffset(int x, int y) const {
     const int block = y / kPixelsDown * blocks_across_ + x / kPixelsAcross;
     return block * kLanes + 4 * (y % kPixelsDown * kPixelsAcross + x % kPixelsAcross);
@@ -34,7 +34,7 @@ class SampleBuffer {
   /// All depths, row by row.
   void copyDepth(std::vector<float>& rows) const;
 
-  /// Id 0 everywhere.
+  /// Sets id 0 everywhere.
   void clear(float farthest);
 
   /// Gives `id` to the samples that triangle `lane` of the batch covers and in which it is the nearest so far. A sample

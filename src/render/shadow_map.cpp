@@ -8,14 +8,14 @@ namespace early_fusion::render {
 
 namespace {
 
-constexpr int kLongSide = 736;  // [texels]: about 3 mm each on a counter of 2 m, less than a pixel sees
+constexpr int kLongSide = 736;  // [texels]: about 3 mm each on a counter of 2 m, less than a pixel
 constexpr int kMargin = 8;      // [texels] that no object reaches
 constexpr int kCellBits = 3;
 constexpr int kCellSize = 1 << kCellBits;  // [texels]
 constexpr int kBoxSize = 3;                // [texels], of the filter
-constexpr int kFilterSize = kBoxSize + 1;  // [texels] that a box which begins between two of them touches
-// [texels] along the normal: to the farthest centre of a texel that the filter touches, and some, so that no surface
-// shades itself
+constexpr int kFilterSize = kBoxSize + 1;  // [texels] that a box touches if it begins between two texels
+// [texels] along the normal: a little more than the distance to the farthest texel centre that the filter touches, so
+// that no surface shades itself
 constexpr float kOffset = 2.25f;
 constexpr float kNothing = -std::numeric_limits<float>::max();
 
@@ -23,7 +23,7 @@ struct Box {
   double low[3], high[3];
 };
 
-/// All places where a part of an object can be, in the world [m].
+/// The box of all places where a part of an object can be, in the world [m].
 Box casterBox(const world::World& world) {
   double radius = 0.01, height = 0.01;
   for (int item = 0; item < world.objects.size(); ++item) {
@@ -135,7 +135,7 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
   const IntLanes inside =
       needed & (first_x >= 0) & (first_x <= width_ - kFilterSize) & (first_y >= 0) & (first_y <= height_ - kFilterSize);
   if (maskBits(inside) == 0) return allLanes(1.f);
-  // Most points are far from a shadow's edge: two numbers for a whole cell decide them as the filter would.
+  // Most points are far from a shadow's edge. For these, two numbers of a cell give the same result as the filter.
   const IntLanes cell = ((first_y >> kCellBits) * (width_ / kCellSize) + (first_x >> kCellBits)) & inside;
   const IntLanes all_lit = ~inside | (gather<FloatLanes>(cell_high_.data(), cell) <= depth);
   const IntLanes none_lit = gather<FloatLanes>(cell_low_.data(), cell) > depth;
@@ -148,8 +148,8 @@ FloatLanes ShadowMap::lit(const std::array<FloatLanes, 3>& point, const std::arr
   return result;
 }
 
-/// Mean of the comparisons over a box of 3x3 texels whose middle is the point, texels at its rim by the share that is
-/// in the box. `first_texel` is the one in which the box begins, the fractions where in it.
+/// The mean of the comparisons over a box of 3x3 texels whose centre is the point. A texel at the rim counts by its
+/// share in the box. The box begins in `first_texel`, at the position that the fractions give.
 FloatLanes ShadowMap::filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y,
                                FloatLanes depth) const {
   std::int32_t offset[kLanes];

@@ -14,8 +14,8 @@ namespace early_fusion::render {
 /// fall away from the camera, to the right.
 inline constexpr float kTowardsLight[3] = {-0.400964f, 0.360867f, 0.842023f};
 
-/// What of the light's rays the objects on the counter stop. The light is far away (orthographic); the map covers every
-/// place where an object can stand, so a point outside it is lit.
+/// The shadows of the objects on the counter. The light is far away (orthographic). The map covers every place where an
+/// object can stand, so a point outside it is lit.
 class ShadowMap {
  public:
   explicit ShadowMap(const world::World& world);
@@ -26,8 +26,8 @@ class ShadowMap {
   };
   void draw(const std::vector<Caster>& casters);
 
-  /// Share of the light that reaches points of a surface, in [0, 1]: soft over three texels, half where the edge of
-  /// what stops the light is, up to the rounding of that edge to whole texels.
+  /// The share of the light that reaches points of a surface, in [0, 1]. It changes over three texels and is a half at
+  /// the shadow's edge, which is rounded to whole texels.
   /// @param point, normal (unit length) in the world [m]
   /// @param needed lanes whose result is used
   FloatLanes lit(const std::array<FloatLanes, 3>& point, const std::array<FloatLanes, 3>& normal,
@@ -39,12 +39,12 @@ class ShadowMap {
 
   Projection projection_;
   float texel_size_ = 0;  // [m]
-  int width_ = 0;         // [texels], of which a cell has kCellSize by kCellSize
+  int width_ = 0;         // [texels]; a cell has kCellSize x kCellSize texels
   int height_ = 0;
   MeshDrawer drawer_;
   std::vector<SampleBuffer> buffer_;         // one; empty until the size is known
   std::vector<float> depth_;                 // row-major, distance towards the light [m]
-  std::vector<float> cell_low_, cell_high_;  // of the depths that a filter which begins in the cell reads
+  std::vector<float> cell_low_, cell_high_;  // range of the depths that a filter reads if it begins in the cell
 };
 
 }  // namespace early_fusion::render

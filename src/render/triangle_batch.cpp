@@ -36,7 +36,7 @@ void setUpEdges(TriangleBatch& t, const TriangleCorners& c, IntLanes centre_x, I
     const int next = (k + 1) % 3;
     t.edge_x[k] = c.y[k] - c.y[next];
     t.edge_y[k] = c.x[next] - c.x[k];
-    // The neighbour sees the edge with both slopes negated, so exactly one of the two owns it.
+    // In the neighbouring triangle, both slopes of the edge are negated, so exactly one of the two covers it.
     const IntLanes owned = (t.edge_x[k] > 0) | ((t.edge_x[k] == 0) & (t.edge_y[k] > 0));
     t.edge[k] = t.edge_x[k] * (centre_x - c.x[k]) + t.edge_y[k] * (centre_y - c.y[k]) + ~owned;
   }

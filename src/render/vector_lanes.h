@@ -12,9 +12,8 @@
 
 namespace early_fusion::render {
 
-/// How many numbers one instruction works on; every loop of the rasterizer goes in steps of it. Whatever its value,
-/// each number comes out with the same bits: only operations that IEEE 754 fixes are used, never an approximate
-/// reciprocal.
+/// The number of elements of a vector. Every loop of the rasterizer uses it as its step. The results have the same bits
+/// for every value, because only operations that IEEE 754 defines are used, and no approximate reciprocals.
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 inline constexpr int kLanes = 16;
 #elif defined(__AVX2__)
@@ -88,10 +87,10 @@ IntLanes firstOfFours(IntLanes a, std::integer_sequence<int, I...>) {
 
 }  // namespace detail
 
-/// Every lane takes the first of its four: a[0] four times, a[4] four times, ...
+/// Every group of four lanes gets its first element: a[0] four times, a[4] four times, ...
 inline IntLanes firstOfFours(IntLanes a) { return detail::firstOfFours(a, std::make_integer_sequence<int, kLanes>()); }
 
-/// base[index] in every lane; Lanes is IntLanes or FloatLanes, of which base holds the elements.
+/// base[index] in every lane. Lanes is IntLanes or FloatLanes, and base has elements of the same type.
 template <class Lanes>
 Lanes gather(const void* base, IntLanes index) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
@@ -180,7 +179,7 @@ Columns<N> gatherRecords(const float* base, const std::int32_t* offset) {
   return from;
 }
 
-/// The reverse, to records that lie one after the other.
+/// The reverse operation, to consecutive records.
 template <int N>
 void storeRecords(Columns<N> from, float* records) {
   constexpr auto kEach = std::make_integer_sequence<int, kLanes>();

@@ -17,7 +17,7 @@ namespace {
 struct View {
   Eigen::Vector3d direction;  ///< to the middle of the hull
   double widest_cosine;       ///< cosine of the largest angle to `direction` at which the cone can meet the hull
-  double distance;            ///< to the hull; 0 with the camera inside, and then there is no outline
+  double distance;            ///< to the hull; 0 if the camera is inside, and then there is no outline
   std::optional<Silhouette> outline;
 };
 

@@ -20,7 +20,7 @@ class CounterTop {
  public:
   explicit CounterTop(const world::World& world) : world_(world) {}
 
-  /// Keeps the instance when it is clear of all others and of the kitchen, and does not overhang too far.
+  /// Adds the instance if it is clear of all others and of the kitchen and its overhang is allowed.
   bool place(const Instance& instance) {
     world::PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
     if (overhang(hull) > world_.options.max_overhang) return false;
@@ -35,9 +35,9 @@ class CounterTop {
   }
 
  private:
-  static constexpr double kTouching = 1e-6;  // [m]; with no clearance asked for, objects still must not overlap
+  static constexpr double kTouching = 1e-6;  // [m]; objects must not overlap even if the clearance is 0
 
-  /// How far a hull reaches over an edge of the counter's top [m]; negative where it does not.
+  /// The length by which a hull overhangs an edge of the counter's top [m]; negative if it does not.
   double overhang(const world::PlacedHull& hull) const {
     const world::HorizontalRectangle& top = world_.counter_top;
     const Eigen::AlignedBox3d& box = hull.bounds();
@@ -89,9 +89,9 @@ std::vector<Instance> sampleInstances(const world::World& world, const Task& tas
   std::ostringstream text;
   text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
        << world.options.placement_depth << " m of the counter, " << world.options.clearance
-       << " m apart; lower instances of task '" << task.name
-       << "', max_instances in training or the world's clearance, or raise placement_width, placement_depth or "
-          "max_overhang; the kitchen's collision shapes take up room, too";
+       << " m apart; reduce instances of task '" << task.name
+       << "', max_instances in training or the world's clearance, or increase placement_width, placement_depth or "
+          "max_overhang; the kitchen's collision shapes need space, too";
   throw core::Error(text.str());
 }
 

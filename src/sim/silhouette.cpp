@@ -10,7 +10,7 @@ namespace {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Adds a point to a chain that only ever turns left, dropping those that it makes superfluous.
+/// Adds a point to a chain that always turns left, and drops the points that are then no corners.
 void extend(std::vector<Eigen::Vector2d>& chain, std::size_t fixed, const Eigen::Vector2d& point) {
   while (chain.size() >= fixed + 2) {
     const Eigen::Vector2d& last = chain.back();
@@ -41,7 +41,7 @@ std::vector<Eigen::Vector2d> outline(std::vector<Eigen::Vector2d> points) {
 
 Silhouette::Silhouette(const std::vector<Eigen::Vector3d>& corners, const Eigen::Vector3d& eye,
                        const Eigen::Vector3d& towards) {
-  // Seen through the plane at distance 1 along `towards`, great circles are straight lines.
+  // In the projection on the plane at distance 1 along `towards`, great circles are straight lines.
   const Eigen::Vector3d w = towards.normalized();
   const Eigen::Vector3d u = w.unitOrthogonal();
   const Eigen::Vector3d v = w.cross(u);

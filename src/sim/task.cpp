@@ -9,10 +9,11 @@ namespace early_fusion::sim {
 
 core::OptionSet Task::options() {
   core::OptionSet set("task");
-  set.add("name", name, "what the task is called in logs and metadata; the file's name when left out");
-  set.add("instances", instances, 1, kMaxInstances, "", "objects on the counter, types drawn with repetition");
-  set.add("requested", requested, 1, kMaxInstances, "", "how many of the instances are requested");
-  set.add("steps", steps, 1, 100000, "", "actions in an episode");
+  set.add("name", name, "name in logs and metadata; if absent, the file's name");
+  set.add("instances", instances, 1, kMaxInstances, "",
+          "number of objects on the counter; items are drawn with repetition");
+  set.add("requested", requested, 1, kMaxInstances, "", "number of requested instances");
+  set.add("steps", steps, 1, 100000, "", "number of actions in an episode");
   return set;
 }
 
@@ -33,8 +34,8 @@ Task loadTask(const std::string& name_or_file) {
 
 Task withUpTo(std::int64_t most, Task task) {
   if (most > kMaxInstances) {
-    throw core::Error("max_instances is " + std::to_string(most) + "; there may be " + std::to_string(kMaxInstances) +
-                      " at most");
+    throw core::Error("max_instances is " + std::to_string(most) + "; it must be at most " +
+                      std::to_string(kMaxInstances));
   }
   if (most > task.maxInstances()) task.max_instances = static_cast<int>(most);
   return task;

@@ -12,7 +12,7 @@ namespace early_fusion::world {
 
 namespace {
 
-/// A step may pass a limit by this share of a step: a URDF's decimals are rounded.
+/// A step may exceed a limit by this share of a step, because a URDF's decimals are rounded.
 constexpr double kLimitTolerance = 1e-3;
 
 std::string text(double value) {
@@ -29,7 +29,7 @@ urdf::JointConstSharedPtr findJoint(const urdf::ModelInterface& model, const std
   throw core::Error(file + ": no joint '" + name + "'; its joints are: " + (known.empty() ? "none" : known));
 }
 
-/// The whole steps within the limits of a joint that must be revolute.
+/// The whole steps within a joint's limits. @throws Error if the joint is not revolute.
 void readSteps(const urdf::Joint& joint, const std::string& file, int* lowest, int* highest) {
   const std::string where = file + ": joint '" + joint.name + "'";
   if (joint.type == urdf::Joint::CONTINUOUS) {
@@ -50,14 +50,14 @@ void readSteps(const urdf::Joint& joint, const std::string& file, int* lowest, i
   }
 }
 
-/// Pose of `link` in `ancestor`, over fixed joints only. @param ends_at what `ancestor` is, for the error's text.
+/// Pose of `link` in `ancestor`, over fixed joints only. @param ends_at the name of `ancestor` in error texts.
 Eigen::Isometry3d fixedChain(const urdf::ModelInterface& model, const std::string& ancestor, const std::string& link,
                              const std::string& ends_at, const std::string& file) {
   Eigen::Isometry3d ancestor_from_link = Eigen::Isometry3d::Identity();
   urdf::LinkConstSharedPtr current = model.getLink(link);
   while (current->name != ancestor) {
     const urdf::JointConstSharedPtr joint = current->parent_joint;
-    if (!joint) throw core::Error(file + ": link '" + link + "' does not hang on " + ends_at);
+    if (!joint) throw core::Error(file + ": link '" + link + "' is not connected to " + ends_at);
     if (joint->type != urdf::Joint::FIXED) {
       throw core::Error(file + ": joint '" + joint->name + "', between " + ends_at + " and link '" + link +
                         "', must be fixed");
@@ -68,14 +68,15 @@ Eigen::Isometry3d fixedChain(const urdf::ModelInterface& model, const std::strin
   return ancestor_from_link;
 }
 
-/// With the optical frame's axes in a frame in which the joint turns about `axis`: positive angles must turn the view
-/// in the documented direction, or PAN_LEFT would look right.
+/// Checks that positive angles turn the view in the documented direction. Otherwise PAN_LEFT would turn right. The
+/// joint turns about `axis`, given in the same frame as the optical frame's axes.
 void checkDirection(const Eigen::Vector3d& axis, const Eigen::Vector3d& forward, const Eigen::Vector3d& expected,
                     const std::string& joint, const char* direction, const std::string& file) {
   if (axis.cross(forward).dot(expected) > 1e-6) return;
-  throw core::Error(file + ": positive angles of joint '" + joint + "' must turn the camera " + direction +
-                    " in its image; they don't: check the joint's axis and the optical frame (z forward, x right, y "
-                    "down)");
+  throw core::Error(
+      file + ": positive angles of joint '" + joint + "' must turn the camera " + direction +
+      " in its image, but they do not; check the joint's axis and the optical frame (z forward, x right, y "
+      "down)");
 }
 
 Eigen::AngleAxisd turn(int steps, const Eigen::Vector3d& axis) { return Eigen::AngleAxisd(steps * kStepRad, axis); }

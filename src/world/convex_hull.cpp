@@ -14,7 +14,7 @@ namespace {
 constexpr int kDirections = 4000;
 constexpr double kCollisionTolerance = 0.00015;  // [m]
 
-/// The axes, then a Fibonacci spiral: directions spread evenly over the sphere.
+/// The axes, then directions that are spread evenly over the sphere (a Fibonacci spiral).
 std::vector<Eigen::Vector3d> directionsAllAround() {
   std::vector<Eigen::Vector3d> directions;
   directions.reserve(6 + kDirections);
@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3d> directionsAllAround() {
   return directions;
 }
 
-/// How far points reach along one direction.
+/// The extent of points along one direction.
 struct Support {
   Eigen::Vector3d direction;
   double reach = -HUGE_VAL;    ///< of all points
@@ -54,7 +54,7 @@ std::vector<Support> supportsOf(const std::vector<Eigen::Vector3d>& points) {
   return supports;
 }
 
-/// Few corners whose hull falls short by at most `tolerance` in the sampled directions.
+/// A small set of corners whose hull falls short by at most `tolerance` in the sampled directions.
 std::vector<Eigen::Vector3d> cornersBySampling(const std::vector<Eigen::Vector3d>& points, double tolerance) {
   std::vector<Support> supports = supportsOf(points);
   std::vector<Eigen::Vector3d> corners;
@@ -74,8 +74,8 @@ std::vector<Eigen::Vector3d> cornersBySampling(const std::vector<Eigen::Vector3d
 }
 
 /// Adds the points that lie farther than `tolerance` outside the corners' hull, the farthest first. A point's distance
-/// never grows with more corners, so an old distance is an upper bound: only the point with the largest one is
-/// measured.
+/// never grows when corners are added, so its last distance is an upper bound. Only the point with the largest bound is
+/// measured again.
 void addPointsOutside(const std::vector<Eigen::Vector3d>& points, double tolerance,
                       std::vector<Eigen::Vector3d>& corners) {
   std::priority_queue<std::pair<double, std::size_t>> outside;

@@ -82,7 +82,7 @@ HorizontalRectangle topOf(const urdf::Link& link, const Eigen::Isometry3d& world
           center.z() + half.z()};
 }
 
-/// Adds a link's collision shapes, those aside that do not rise above `counter_top` [m]: objects stand there.
+/// Adds a link's collision shapes that rise above `counter_top` [m]. The others are below the objects.
 void addObstacles(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, double counter_top,
                   const std::string& urdf_file, int max_triangles,
                   std::vector<std::shared_ptr<const PlacedHull>>& obstacles) {

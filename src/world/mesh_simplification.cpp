@@ -8,8 +8,8 @@ namespace early_fusion::world {
 
 namespace {
 
-constexpr float kAnyError = 1.f;       // of the mesh's extent: the triangle count decides, not the error
-constexpr double kCloseEnough = 1.05;  // of the target: a few triangles too many cost less than a torn texture
+constexpr float kAnyError = 1.f;       // a share of the mesh's extent: the triangle count is the limit, not the error
+constexpr double kCloseEnough = 1.05;  // a share of the target: a few more triangles cost less than a torn texture
 
 std::vector<std::uint32_t> collapseEdges(const MeshPart& part, std::size_t target, bool across_seams) {
   const float* positions = part.vertices.front().position.data();

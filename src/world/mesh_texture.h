@@ -8,15 +8,16 @@
 
 namespace early_fusion::world {
 
-/// Edge of the largest texture that is kept [px]: at 128 pixels an image nothing finer can be seen.
+/// The maximum edge of a texture [px]. Larger ones are reduced, because a frame of 128 pixels shows no finer detail.
 inline constexpr int kMaxTextureSize = 512;
 
-/// The material's diffuse image, from a file beside `mesh_path` or embedded in the scene, as a power-of-two square; a
-/// plain 4x4 one of its diffuse colour when it has no image.
+/// The material's diffuse image as a square with a power-of-two edge. It comes from a file beside `mesh_path` or is
+/// embedded in the scene. Without an image, the result is 4x4 texels of the diffuse colour.
 /// @throws Error naming `mesh_path` and the image that cannot be read.
 Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path);
 
-/// Strength of the highlight, [0, 1], from the specular colour and shininess, or from a physically based roughness.
+/// The strength of the highlight, [0, 1], computed from the specular colour and shininess or from a physically based
+/// roughness.
 float readSpecular(const aiMaterial& material);
 
 }  // namespace early_fusion::world

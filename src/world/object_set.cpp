@@ -39,11 +39,12 @@ void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, con
 std::string readText(const YAML::Node& entry, const std::string& key, const std::string& file) {
   const YAML::Node value = entry[key];
   const std::string text = value && value.IsScalar() ? value.as<std::string>() : "";
-  if (text.empty()) throw core::Error(place(file, value ? value : entry) + "an object needs a " + key + ", a text");
+  if (text.empty())
+    throw core::Error(place(file, value ? value : entry) + "an object needs a " + key + ", which is a text");
   return text;
 }
 
-/// A number, or one for each axis; 1 when absent.
+/// One number, or one for each axis; 1 if absent.
 Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
   if (!value) return Eigen::Vector3d::Ones();
   Eigen::Vector3d scale = Eigen::Vector3d::Constant(NAN);

@@ -14,8 +14,8 @@ namespace {
 /// shapes less than 0.0001 units apart (1 um) as touching.
 constexpr double kUnitsPerMetre = 100.0;
 
-/// How far a distance may lie above what its direction confirms: a hundredth of a millimetre [Bullet's unit], and a
-/// share of the distance; Bullet itself stops at a share of 0.0001.
+/// The maximum difference between a distance and the gap along its direction: 0.01 mm [Bullet's unit] plus a share of
+/// the distance. Bullet itself stops at a share of 0.0001.
 constexpr btScalar kAbsoluteTolerance = btScalar(1e-3);
 constexpr btScalar kRelativeTolerance = btScalar(3e-4);
 
@@ -31,19 +31,20 @@ btTransform translation(const btVector3& by) {
   return transform;
 }
 
-/// How far apart the shapes are along a unit vector that points from `b` to `a`: a lower bound of their distance,
-/// negative where they overlap in that direction.
+/// The gap between the shapes along a unit vector that points from `b` to `a`. It is a lower bound of their distance,
+/// and negative if they overlap in that direction.
 btScalar gapAlong(const btVector3& along, const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin) {
   return along.dot(a.localGetSupportVertexWithoutMarginNonVirtual(-along)) -
          along.dot(b.localGetSupportVertexWithoutMarginNonVirtual(along) + b_origin);
 }
 
-/// The smallest distance [Bullet's unit] between `a`, in the origin, and `b`; 0 where they meet. Both have margin 0.
+/// The smallest distance [Bullet's unit] between `a`, which is at the origin, and `b`; 0 if they meet. Both have margin
+/// 0.
 ///
 /// GJK sometimes stops early on a flat simplex and reports a distance that is too large, even for shapes that overlap.
 /// So a distance is accepted only if the gap along its direction confirms it. Otherwise GJK starts again from another
 /// simplex. If no start helps, the result is the widest gap that was found.
-/// @param nearest the point of `a` nearest to `b`, set where the distance is not 0.
+/// @param nearest receives the point of `a` that is nearest to `b`, if the distance is not 0.
 double distanceBetween(const btConvexShape& a, const btConvexShape& b, const btVector3& b_origin, btVector3* nearest) {
   constexpr int kTries = 12;
   btVector3 guess = -b_origin;

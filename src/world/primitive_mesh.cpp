@@ -31,7 +31,7 @@ Eigen::Vector3d around(int segment) {
   return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
 }
 
-/// A disc at height z that looks up or down.
+/// A disc at height z that faces up or down.
 void addCap(MeshPart& part, double radius, double z, bool up) {
   const std::uint32_t first = static_cast<std::uint32_t>(part.vertices.size());
   const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ() * (up ? 1 : -1);

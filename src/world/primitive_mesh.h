@@ -7,10 +7,10 @@
 
 namespace early_fusion::world {
 
-/// The shapes that a URDF spells out, as meshes of one colour (0xAABBGGRR), centred on the origin [m].
+/// Meshes of a URDF's geometric primitives, in one colour (0xAABBGGRR), centred on the origin [m].
 TexturedMesh boxMesh(const Eigen::Vector3d& size, std::uint32_t colour);
 
-/// About the z axis.
+/// Its axis is the z axis.
 TexturedMesh cylinderMesh(double radius, double length, std::uint32_t colour);
 TexturedMesh sphereMesh(double radius, std::uint32_t colour);
 

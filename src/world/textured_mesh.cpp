@@ -19,7 +19,7 @@ namespace {
 constexpr float kCreaseAngleDeg = 50.f;
 constexpr int kMaxNodeDepth = 256;
 
-/// The scene as far as it has been turned into parts: one part a material.
+/// The state of a conversion from assimp's scene to parts, one part for each material.
 struct Conversion {
   const std::string& path;
   const aiScene& scene;
@@ -44,7 +44,7 @@ Vertex convertVertex(const aiMesh& mesh, unsigned index, const Eigen::Affine3d& 
   if (std::isfinite(length) && length > 1e-12f) {
     vertex.normal /= length;
   } else {
-    vertex.normal = Eigen::Vector3f::UnitZ();  // of a triangle without an area, which is never seen
+    vertex.normal = Eigen::Vector3f::UnitZ();  // the triangle has no area, so it is never visible
   }
   vertex.uv.setZero();
   if (mesh.HasTextureCoords(0)) vertex.uv << mesh.mTextureCoords[0][index].x, mesh.mTextureCoords[0][index].y;
@@ -57,7 +57,7 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
   if (!std::isfinite(determinant) || determinant == 0) {
     throw core::Error(conversion.path + ": mesh '" + mesh.mName.C_Str() + "' is scaled to nothing or not finite");
   }
-  // The inverse transpose keeps normals perpendicular under any scale, and outward under a mirror.
+  // The inverse transpose keeps normals perpendicular under any scale, and pointing outwards under a reflection.
   const Eigen::Matrix3d normal_transform = transform.linear().inverse().transpose();
   MeshPart& part = conversion.part_of_material[mesh.mMaterialIndex];
   const auto first = static_cast<std::uint32_t>(part.vertices.size());
@@ -120,7 +120,7 @@ TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& sc
   Assimp::Importer importer;
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngleDeg);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // A Collada file's coordinates are taken as they stand, as other ROS programs take them: z is up in the world.
+  // A Collada file's coordinates are used unchanged, as in other ROS programs: z is up in the world.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene =
       importer.ReadFile(path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |

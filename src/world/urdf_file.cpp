@@ -12,7 +12,7 @@ namespace early_fusion::world {
 
 namespace {
 
-/// Keeps what urdfdom would print, which is the only place where it says what is wrong.
+/// Captures urdfdom's output, because urdfdom reports the reason of a failure nowhere else.
 class Complaints : public console_bridge::OutputHandler {
  public:
   Complaints() { console_bridge::useOutputHandler(this); }

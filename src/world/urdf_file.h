@@ -8,7 +8,7 @@
 
 namespace early_fusion::world {
 
-/// @throws Error naming `path` and what the parser says of it.
+/// @throws Error naming `path` and the parser's reason.
 urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path);
 
 Eigen::Vector3d toEigen(const urdf::Vector3& vector);

@@ -32,20 +32,25 @@ std::string orShipped(const std::string& world_file) {
 
 core::OptionSet WorldOptions::options() {
   core::OptionSet set("world");
-  set.add("objects", objects, "object set: a YAML file, relative to this one");
-  set.add("kitchen_urdf", kitchen_urdf, "URDF of everything that never moves; its root link is the world frame");
+  set.add("objects", objects, "the object set, a YAML file; paths are relative to the world file");
+  set.add("kitchen_urdf", kitchen_urdf, "URDF of the kitchen, which never moves; its root link is the world frame");
   set.add("camera_urdf", camera_urdf, "URDF of the pan-tilt camera; its root link is the world frame");
   set.add("pan_joint", pan_joint, "revolute joint in camera_urdf, positive to the left");
   set.add("tilt_joint", tilt_joint, "revolute joint in camera_urdf, positive downwards");
   set.add("optical_frame", optical_frame, "link in camera_urdf: z forward, x right, y down");
   set.add("counter_link", counter_link, "link in kitchen_urdf whose collision box carries the objects");
-  set.add("placement_width", placement_width, 0.0, 100.0, "m", "along y, about the counter's middle: for the centres");
-  set.add("placement_depth", placement_depth, 0.0, 100.0, "m", "along x, likewise");
-  set.add("clearance", clearance, 0.0, 1.0, "m", "between two objects, and between an object and the kitchen");
-  set.add("max_overhang", max_overhang, 0.0, 1.0, "m", "of an object over an edge of the counter's top");
-  core::addImageSize(set, "image_size", image_size, "edge of the square image");
-  set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "field of view of the camera");
-  set.add("max_triangles", max_triangles, 16, 1000000, "", "a mesh with more is simplified when it is loaded");
+  set.add("placement_width", placement_width, 0.0, 100.0, "m",
+          "extent of the objects' centres along y, centred on the counter");
+  set.add("placement_depth", placement_depth, 0.0, 100.0, "m",
+          "extent of the objects' centres along x, centred on the counter");
+  set.add("clearance", clearance, 0.0, 1.0, "m",
+          "minimum distance between two objects, and between an object and the kitchen's collision shapes");
+  set.add("max_overhang", max_overhang, 0.0, 1.0, "m",
+          "maximum length by which an object overhangs an edge of the counter's top");
+  core::addImageSize(set, "image_size", image_size, "edge of the square frame");
+  set.add("horizontal_fov_deg", horizontal_fov_deg, 10.0, 120.0, "degrees", "horizontal field of view of the frame");
+  set.add("max_triangles", max_triangles, 16, 1000000, "",
+          "a mesh with more triangles is simplified to this number when it is loaded");
   return set;
 }
 

@@ -76,7 +76,7 @@ TEST_F(FileTest, ConfigNamesAreFoundAndPathsAreTakenAsTheyAre) {
     findConfig("tasks", "esay");
     ADD_FAILURE() << "accepted";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "'esay' is none of the known tasks (easy) and no .yaml file");
+    EXPECT_STREQ(error.what(), "'esay' is neither one of the known tasks (easy) nor a .yaml file");
   }
   ::unsetenv("EARLY_FUSION_SHARE");
 }

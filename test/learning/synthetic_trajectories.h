@@ -16,7 +16,7 @@ inline constexpr int kTinySteps = 6;
 
 inline core::Vocabulary tinyVocabulary() { return core::Vocabulary({"mug", "bowl", "plate"}); }
 
-/// A trajectory with random frames whose label can be read off them: the brighter the frame, the higher the action.
+/// A trajectory with random frames. A frame's brightness determines its label: brighter frames have higher actions.
 inline Trajectory syntheticTrajectory(std::uint64_t episode) {
   core::Random random(99, {episode});
   Trajectory trajectory;

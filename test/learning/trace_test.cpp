@@ -10,8 +10,8 @@
 namespace early_fusion::learning {
 namespace {
 
-// Whoever checks the rules from a trace must find: moves change the angle by 2 degrees, a collected object goes, and
-// the expert's cheapest cost falls by one with each of its actions.
+// A trace must show the rules: moves change the angle by 2 degrees, a collected object disappears, and the expert's
+// lowest cost falls by one with each of its actions.
 TEST(Trace, TheExpertsTraceObeysTheRules) {
   RolloutRunner runner(shippedWorld(), sim::loadTask("medium"), 11);
   std::vector<nlohmann::json> lines;

@@ -75,7 +75,8 @@ TEST(Trainer, LearnsLabelsThatTheFramesShow) {
   EXPECT_LT(last, 0.6 * first);
 }
 
-/// Whatever decides the samples must reach the loss: weights, skipped repeats, requests, failed collects, harm.
+/// Everything that determines the samples must reach the loss: weights, skipped repeats, requests, failed collects,
+/// harmful actions.
 TEST(Trainer, TheLossOfARoundOfOneBatchIsThatOfItsTrajectoriesSamples) {
   TrainingOptions options = tinyTraining();
   options.epochs = 1;

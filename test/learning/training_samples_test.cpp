@@ -88,7 +88,8 @@ TEST(SamplesOf, ASampleHasTheWeightOfItsLabel) {
   EXPECT_EQ(samples[1].weight, 1) << "PAN_LEFT";
 }
 
-/// Of a step with the request of a mug. @param frame_changed whether the step's frame is not the one before.
+/// Unlikelihood weights of a step whose request is a mug. @param frame_changed whether its frame differs from the
+/// previous one.
 Weights unlikelihood(int nearest_item, bool frame_changed) {
   Trajectory trajectory = fourSteps({{{kMug}, label(Action::kPanLeft)}}, nearest_item);
   if (!frame_changed) trajectory.steps[2].frame = trajectory.steps[1].frame;

@@ -9,7 +9,7 @@
 
 namespace early_fusion::model {
 
-/// What the Error that `work` throws says; "no error" where it throws none.
+/// The text of the Error that `work` throws; "no error" if it throws none.
 inline std::string errorOf(const std::function<void()>& work) {
   try {
     work();

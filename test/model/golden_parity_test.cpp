@@ -1,4 +1,4 @@
-// The network against stored figures of the same one in libtorch, which need no libtorch to compare with.
+// The network against stored values of libtorch's network. This test needs no libtorch.
 #include <gtest/gtest.h>
 
 #include "early_fusion/nn/adam.h"
@@ -45,8 +45,8 @@ void addSteps(const ParityCase& network, GoldenValues& values) {
 
 class GoldenParity : public testing::TestWithParam<ParityCase> {};
 
-// Fails for a changed forward pass, gradient, running statistic or optimizer step, and, at "input", where the test's
-// own weights or frames have changed: then write the file again, as its head says.
+// Fails for a changed forward pass, gradient, running statistic or optimizer step. Fails at "input" if the test's own
+// weights or frames have changed; then write the file again, as its first lines say.
 TEST_P(GoldenParity, HasLibtorchsProbabilitiesLossGradientsStatisticsAndTenSteps) {
   GoldenValues values;
   addGradients(GetParam(), values);

@@ -15,12 +15,12 @@
 
 namespace early_fusion::model {
 
-/// Figures of one network by name. The first word of a name is its kind: see expectGolden().
+/// Values of one network by name. The first word of a name is its kind; see expectGolden().
 using GoldenValues = std::map<std::string, std::vector<double>>;
 
 constexpr char kGoldenFile[] = EARLY_FUSION_SOURCE_SHARE "/test/model/golden_parity.txt";
 constexpr double kGoldenRate = 1e-3;
-/// Adam divides a gradient by its size: an epsilon above the rounding errors keeps two implementations together.
+/// Adam divides a gradient by its size. Two implementations stay close only if epsilon is larger than rounding errors.
 constexpr double kGoldenEpsilon = 1e-3;
 constexpr int kGoldenSteps = 10;
 
@@ -37,7 +37,7 @@ inline std::vector<double> digest(const float* numbers, std::size_t size) {
   return result;
 }
 
-/// What the figures of a case depend on, besides the network.
+/// The inputs on which the values of a case depend, besides the network.
 inline GoldenValues goldenInputs(const nn::Parameters& first, const TestBatch& batch) {
   std::vector<float> bytes;
   for (const std::vector<std::uint8_t>& frame : batch.frames) bytes.insert(bytes.end(), frame.begin(), frame.end());
@@ -52,7 +52,7 @@ inline std::string goldenName(const ParityCase& network) {
          ", image_size " + std::to_string(network.image_size);
 }
 
-/// A section "[goldenName()]" a case, in it a line "name: numbers" a figure.
+/// Each case has a section "[goldenName()]" with a line "name: numbers" for each value.
 inline std::map<std::string, GoldenValues> readGoldenFile() {
   std::map<std::string, GoldenValues> cases;
   std::ifstream stream(kGoldenFile);
@@ -83,8 +83,8 @@ inline void writeGoldenCase(std::ostream& stream, const ParityCase& network, con
   }
 }
 
-/// How far the numbers of a figure may be off: absolute for probabilities and losses, a share of the tensor's largest
-/// number for a digest. Rounding errors of the steps grow from step to step.
+/// The allowed error of a value: absolute for probabilities and losses, a share of the tensor's largest number for a
+/// digest. Rounding errors grow from step to step.
 inline double goldenTolerance(const std::string& name, std::size_t index) {
   if (name == "probabilities") return 1e-5;
   if (name == "loss") return 2e-6;
@@ -95,7 +95,7 @@ inline double goldenTolerance(const std::string& name, std::size_t index) {
   return 1e-7;                                    // inputs, which are the same bits but for the file's eight digits
 }
 
-/// Fails for every number of `values` that is not the stored one, and where one of them has a figure more.
+/// Fails for every number of `values` that differs from the stored one, and if one of the two has more values.
 inline void expectGolden(const GoldenValues& values, const GoldenValues& golden) {
   EXPECT_EQ(values.size(), golden.size());
   for (const auto& [name, expected] : golden) {

@@ -1,4 +1,4 @@
-// The stored figures that golden_parity_test compares with against libtorch itself. With --write, stores them anew:
+// Checks the stored values of golden_parity_test against libtorch. With --write, writes them again:
 //   devel/lib/early_fusion/model_libtorch_golden_test --write
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ GoldenValues torchValues(const ParityCase& network) {
 
 int writeGoldenFile() {
   std::ofstream stream(kGoldenFile);
-  stream << "# libtorch's figures of the networks in parity_case.h, for golden_parity_test. Written by\n"
+  stream << "# libtorch's values of the networks in parity_case.h, for golden_parity_test. Written by\n"
             "#   devel/lib/early_fusion/model_libtorch_golden_test --write\n"
             "# A tensor's numbers are its digest(): size, largest absolute number, three sums under random signs.\n";
   for (const ParityCase& network : kParityCases) writeGoldenCase(stream, network, torchValues(network));
@@ -83,7 +83,7 @@ int writeGoldenFile() {
 
 class LibtorchGolden : public testing::TestWithParam<ParityCase> {};
 
-// Fails where the stored figures are not libtorch's: edited by hand, or not written again after a change of the inputs.
+// Fails if the stored values are not libtorch's: they were edited, or not written again after a change of the inputs.
 TEST_P(LibtorchGolden, IsWhatIsStored) {
   const auto golden = readGoldenFile();
   ASSERT_TRUE(golden.count(goldenName(GetParam()))) << "nothing is stored of " << goldenName(GetParam());

@@ -131,8 +131,8 @@ TEST(NetworkPolicy, GradientsAreTheSlopeOfTheLoss) {
       return (lossAt(values + way) - lossAt(values - way)) / (2 * step) / norm;
     };
     EXPECT_NEAR(slopeAlong(gradients), 1, 0.02);
-    // Of each tensor by itself, too: a gradient that is lost leaves the slope along the others' as it was. Kinks of
-    // max-pooling and ReLU make it less exact.
+    // Each tensor is also tested alone, because a lost gradient does not change the slope along the other tensors.
+    // Kinks of max-pooling and ReLU make this less exact.
     for (const nn::TensorSlice& slice : policy->parameters().parameterSlices()) {
       Eigen::VectorXf direction = Eigen::VectorXf::Zero(values.size());
       direction.segment(slice.offset, slice.size) = gradients.segment(slice.offset, slice.size);

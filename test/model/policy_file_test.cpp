@@ -57,7 +57,7 @@ TEST(PolicyFile, HoldsWhatItsKindNeedsAndNoMore) {
   EXPECT_EQ(file.metadata.at("horizontal_fov_deg"), "60");
 }
 
-/// What loadPolicy() says of a file that was changed.
+/// The error of loadPolicy() for a changed file.
 std::string loadErrorAfter(const std::function<void(nn::WeightsFile&)>& change) {
   nn::WeightsFile file = savePolicy(*makeSmall(smallOptions()), {});
   change(file);

@@ -10,8 +10,8 @@
 
 namespace early_fusion::render {
 
-/// The slow and plain way to see the kitchen of a World: one ray after the other against every triangle, in double
-/// precision. The second opinion on the rasterizer.
+/// A slow and simple ray caster for the kitchen of a World. It tests every ray against every triangle in double
+/// precision. The rasterizer is compared with it.
 class RayCaster {
  public:
   struct Hit {

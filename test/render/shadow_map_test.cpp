@@ -43,7 +43,7 @@ std::unique_ptr<world::World> plateWorld(const Axes& axes) {
   return world;
 }
 
-/// What a walk from deep in the shadow into the light sees of its edge.
+/// The shadow's edge along a line from the shadow into the light.
 struct Edge {
   double place = 0;     ///< where half of the light arrives, from the middle of the shadow [m]
   double width = 0;     ///< of the slope [m]

@@ -29,7 +29,7 @@ class ActingPolicyTest : public testing::Test {
     return image;
   }
 
-  /// What the network says of these frames, the newest first.
+  /// The network's probabilities for these frames, the newest first.
   std::vector<float> expected(const std::vector<core::Image>& frames, const core::Request& request) {
     model::Observation observation;
     observation.request = &request;

@@ -1,4 +1,4 @@
-// Launch files: that they agree with the options of the nodes that they start, and which parameters they set.
+// Launch files agree with the options of the nodes that they start, and set the right parameters.
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 

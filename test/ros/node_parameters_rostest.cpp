@@ -1,4 +1,4 @@
-// Nodes that are started wrongly: they must end with exit code 1 and say which parameter is wrong.
+// A node with a wrong parameter must end with exit code 1 and name the parameter.
 #include <gtest/gtest.h>
 #include <ros/init.h>
 #include <ros/master.h>

@@ -1,4 +1,4 @@
-// What stands between a real pan-tilt camera and the policy, with a test in the place of both.
+// The nodes between a real pan-tilt camera and the policy. The test replaces both.
 #include <early_fusion/Action.h>
 #include <early_fusion/Request.h>
 #include <early_fusion/SetRequest.h>
@@ -39,7 +39,7 @@ class RealCameraTest : public testing::Test {
     }));
   }
 
-  /// Sends images, as a camera would, until one of them is asked about.
+  /// Sends images, as a camera does, until one of them has a request.
   RequestConstPtr nextRequest() {
     requests_.clear();
     static std::uint32_t stamp = 0;
@@ -127,7 +127,7 @@ TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTh
   act("PAN_RIGHT", header);
   EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + world::kStepRad) < 1e-9; }));
 
-  // An answer that comes when another image has been asked about is not carried out, the answer to that one is.
+  // An action that arrives after the next request is dropped. The action for the next request is carried out.
   const RequestConstPtr first = nextRequest();
   const RequestConstPtr second = nextRequest();
   ASSERT_TRUE(first && second);

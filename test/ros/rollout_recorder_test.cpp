@@ -77,7 +77,7 @@ class RolloutRecorderTest : public testing::Test {
     for (const Messages& messages : steps) add(messages);
   }
 
-  /// @return what the recorder has against these messages.
+  /// @return the recorder's error for these messages.
   std::string complaint(const Messages& messages) {
     try {
       add(messages);

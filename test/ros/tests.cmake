@@ -3,7 +3,7 @@ find_package(rostest QUIET)
 add_library(${PROJECT_NAME}_child_process STATIC ros/child_process.cpp)
 target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
-foreach(name acting_policy camera_image conversions markers rollout_recorder)
+foreach(name acting_policy camera_image conversions markers option_tables rollout_recorder)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()

@@ -30,20 +30,21 @@ class Faults(unittest.TestCase):
 
     def test_a_mistake_is_told_by_where_the_requested_object_was(self):
         end = [step("COLLECT", ["peach"], [1])]
-        for wrong, cause in ((step("COLLECT", ["peach"], [0, 1], [2]), "stands before"),
-                             (step("COLLECT", ["peach"], [0], [3]), "stands beside"),
-                             (step("COLLECT", ["peach"], [0], [4]), "something else"),
-                             (step("COLLECT", [], [0], []), "any more")):
+        for wrong, cause in ((step("COLLECT", ["peach"], [0, 1], [2]), "in front of"),
+                             (step("COLLECT", ["peach"], [0], [3]), "beside a requested"),
+                             (step("COLLECT", ["peach"], [0], [4]), "another object"),
+                             (step("COLLECT", [], [0], []), "after the request was finished")):
             causes = analyse_trace.faults([wrong] + end if wrong["request"] else end + [wrong])
             self.assertEqual(len(causes), 1)
             self.assertIn(cause, causes[0])
 
     def test_what_is_left_is_told_by_the_ending(self):
-        for steps, cause in ((moves(costs=[9]), "under way"),
+        for steps, cause in ((moves(costs=[9]), "still moving"),
                              (moves(costs=[11]), "out of reach"),
-                             (moves(costs=[9], exposure=0), "nothing but REMOVE"),
-                             ([step("COLLECT", ["peach"], costs=[2])] * 10, "COLLECT in vain"),
-                             ([step("PAN_LEFT", ["peach"], costs=[2], pan=2 * (i % 2)) for i in range(10)], "to and fro")):
+                             (moves(costs=[9], exposure=0), "only REMOVE"),
+                             ([step("COLLECT", ["peach"], costs=[2])] * 10, "repeated COLLECT without effect"),
+                             ([step("PAN_LEFT", ["peach"], costs=[2], pan=2 * (i % 2)) for i in range(10)],
+                              "back and forth")):
             causes = analyse_trace.faults(steps)
             self.assertEqual(len(causes), 1, causes)
             self.assertIn(cause, causes[0])

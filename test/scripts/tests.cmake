@@ -5,3 +5,5 @@ add_test(NAME scripts_animate_episode_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/animate_episode_test.py
                  ${PROJECT_SOURCE_DIR} $<TARGET_FILE:${PROJECT_NAME}_cli>)
 set_tests_properties(scripts_animate_episode_test PROPERTIES SKIP_RETURN_CODE 77)
+add_test(NAME scripts_documents_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/documents_test.py ${PROJECT_SOURCE_DIR})

@@ -48,8 +48,8 @@ TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
   const std::string error = world::errorOf([] { loadTask("harder"); });
-  EXPECT_TRUE(mentions(error, "'harder' is none of the known tasks (hard, medium, simple)")) << error;
-  EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is none of the known tasks"));
+  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple) nor")) << error;
+  EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is neither one of the known tasks"));
 }
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {

@@ -83,7 +83,8 @@ TEST(ConvexHull, KeepsTheBoundingBoxHoweverWideTheTolerance) {
   }
 }
 
-// Fails where corners are sought along sampled directions only: none of 4,000 points at such a flat tip well enough.
+// Fails if corners are found along sampled directions only: none of the 4,000 directions is close enough to such a flat
+// tip.
 TEST(ConvexHull, ReachesACornerThatFewDirectionsPointTo) {
   Points points;
   for (int corner = 0; corner < 4; ++corner) {

@@ -164,8 +164,8 @@ const Model& object(const std::string& name) {
   return *std::find_if(objects().begin(), objects().end(), [&](const Model& model) { return model.name == name; });
 }
 
-// Fails when words on a side read from right to left or stand on their head, and when most of what is printed on the
-// sides is drawn out or squeezed: caps and rims, in one colour, are the smaller part.
+// Fails if words on a side are mirrored or upside down, and if most of the print on the sides is stretched or
+// compressed. Caps and rims, which have one colour, are the smaller part.
 TEST(ShippedMeshesTest, PrintOnSidesIsUprightAndInProportion) {
   for (const char* name : {"cracker_box", "sugar_box", "tomato_soup_can", "mustard_bottle", "gelatin_box",
                            "potted_meat_can", "milk_carton"}) {
@@ -201,7 +201,7 @@ double redShare(const Model& model, int axis) {
   return static_cast<double>(red) / all;
 }
 
-// Fails when what is on a label, of which some is red, goes around the narrow sides, which face along y.
+// Fails if the print of a label, part of which is red, is on the narrow sides, which face along y.
 TEST(ShippedMeshesTest, LabelsAreOnTheBroadSides) {
   for (const char* name : {"mustard_bottle", "potted_meat_can"}) {
     EXPECT_GT(redShare(object(name), 0), 0.05) << name;

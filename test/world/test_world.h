@@ -15,7 +15,7 @@
 
 namespace early_fusion::world {
 
-/// A temporary folder that goes with its contents.
+/// A temporary folder that is removed with its contents.
 class TestFolder {
  public:
   TestFolder() {

@@ -10,7 +10,7 @@
 namespace early_fusion::make_meshes {
 namespace {
 
-// Labels, each in the proportions of the surface that it goes around.
+// Labels. Each has the proportions of the surface that it covers.
 constexpr Cell kSoupLabel{0, 0, 256, 115};
 constexpr Cell kMeatLabel{0, 0, 256, 69};
 constexpr Cell kMustardLabel{0, 0, 256, 160};
@@ -20,8 +20,8 @@ constexpr Cell kRim{192, 160, 64, 96};
 
 const Colour kTin{176, 178, 182};
 
-// Rings begin in the middle of the broad +x side. Begun in that of the narrow -y side instead, a label has its seam
-// there, a quarter of it in the middle of one broad side and three quarters in that of the other.
+// Rings begin in the middle of the broad +x side. If they began in the middle of the narrow -y side, the label's seam
+// would be there, and the broad sides would show the label at a quarter and at three quarters of its width.
 std::vector<Ring> seamOnNarrowSide(std::vector<Ring> rings) {
   for (Ring& ring : rings) std::rotate(ring.begin(), ring.end() - ring.size() / 4, ring.end());
   return rings;

@@ -6,8 +6,8 @@
 
 namespace early_fusion::make_meshes {
 
-/// A smooth curve through `points` (Catmull-Rom), `steps` pieces between every two of them; the first and the last
-/// point are kept.
+/// A smooth curve through `points` (Catmull-Rom) with `steps` pieces between neighbouring points. It includes the first
+/// and the last point.
 template <int Dimension>
 std::vector<Eigen::Matrix<double, Dimension, 1>> smoothCurve(
     const std::vector<Eigen::Matrix<double, Dimension, 1>>& points, int steps) {
@@ -16,7 +16,7 @@ std::vector<Eigen::Matrix<double, Dimension, 1>> smoothCurve(
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point& p1 = points[i];
     const Point& p2 = points[i + 1];
-    // Mirrored points beyond the ends make the curve leave and arrive straight.
+    // Mirrored points beyond the ends make the curve straight at its ends.
     const Point p0 = i > 0 ? points[i - 1] : Point(2 * p1 - p2);
     const Point p3 = i + 2 < points.size() ? points[i + 2] : Point(2 * p2 - p1);
     for (int step = 0; step < steps; ++step) {

@@ -24,7 +24,7 @@ struct Cell {
 
   int x = 0, y = 0, width = 256, height = 256;
 
-  /// The cell without its margin, which keeps its neighbours out of coarse mip levels.
+  /// The cell without its margin. The margin keeps neighbouring cells out of coarse mip levels.
   UvRect uv() const;
 };
 
@@ -48,7 +48,7 @@ class Panel {
   /// Writes one line of text, as large as fits, into the middle of a rectangle.
   void text(const std::string& words, double left, double top, double right, double bottom, const Colour& colour);
 
-  /// Grey rows that look like small print from afar.
+  /// Grey rows that look like small print from a distance.
   void smallPrint(double left, double top, double right, double bottom, int rows, const Colour& colour);
 
   /// Recolours every pixel: `recolour(x, y, colour so far)`, x and y in [0, 1].
@@ -63,7 +63,7 @@ class Panel {
   cv::Mat pixels_;
 };
 
-/// A texture in the making, drawn at twice its size.
+/// A texture that is drawn at twice its size and then reduced.
 class Canvas {
  public:
   /// @param size edge of the finished texture [px].

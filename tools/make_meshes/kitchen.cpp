@@ -18,7 +18,7 @@ constexpr double kCounterDepth = 0.75;
 constexpr double kCounterWidth = 3.2;
 constexpr double kCounterThickness = 0.04;
 constexpr double kSplashHeight = 0.46;
-// Large faces are cut up, since the whole of a triangle is clipped where a corner is far out of view.
+// Large faces are divided, because a large triangle with a corner far out of view needs clipping.
 constexpr double kPiece = 0.4;
 
 int pieces(double length) { return std::max(1, static_cast<int>(std::ceil(length / kPiece))); }

@@ -7,7 +7,7 @@
 
 namespace early_fusion::make_meshes {
 
-/// A closed section of a surface [m]; counter-clockwise about the direction in which the sections follow each other.
+/// A closed section of a surface [m], counter-clockwise about the direction from one section to the next.
 using Ring = std::vector<Eigen::Vector3d>;
 
 /// How the texture lies on a lofted surface.

@@ -19,7 +19,7 @@ void writeAll(const std::string& folder, const std::vector<early_fusion::make_me
 int main(int argc, char** argv) {
   CLI::App app("Makes the meshes that ship with early_fusion: the same files on every run.");
   std::string folder;
-  app.add_option("folder", folder, "Where objects/ and kitchen/ are written, such as meshes; made where missing")
+  app.add_option("folder", folder, "The folder for objects/ and kitchen/, such as meshes; created if it is missing")
       ->required();
   CLI11_PARSE(app, argc, argv);
   try {

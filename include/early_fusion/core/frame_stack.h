@@ -6,16 +6,16 @@
 
 namespace early_fusion::core {
 
-/// How many frames the network sees: the current one and the two before it (Walsman et al. 2019, sec. III). An expert
-/// that knows no more than the policy sees as many.
+/// The number of frames that the network sees: the current one and the two before it (Walsman et al. 2019, sec. III).
+/// The searching expert uses the same number.
 inline constexpr int kStackedFrames = 3;
 
 /// The frames that a policy sees at one step: RGB8 (image_size, image_size, 3), the newest first. nullptr is a black
 /// frame, for steps before the episode began. Nothing is owned.
 using FrameStack = std::array<const std::uint8_t*, kStackedFrames>;
 
-/// The frame stack of a step. @param frame_at (std::size_t step) -> the frame of that step; asked for the last
-/// kStackedFrames steps up to `step` alone.
+/// The frame stack of a step. @param frame_at (std::size_t step) -> the frame of that step. Called only for the last
+/// kStackedFrames steps up to `step`.
 template <class FrameAt>
 FrameStack frameStack(std::size_t step, FrameAt frame_at) {
   FrameStack frames{};

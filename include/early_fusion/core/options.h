@@ -19,7 +19,7 @@ struct Option {
   std::string unit;     ///< empty if it has none
   std::string range;    ///< as shown to the user: "[1, 4096]", "a multiple of 16 in [16, 256]", "paper | fast"
   std::string initial;  ///< the default, as text
-  std::string help;
+  std::string help;     ///< a phrase without a full stop at its end
   std::function<void(const std::string& text)> set;  ///< @throws Error with the reason, without the option's name
   std::function<std::string()> get;
 

@@ -5,11 +5,11 @@
 
 namespace early_fusion::expert {
 
-/// Which way the camera was last panned over the frames that a policy sees, core::kStackedFrames: left, right, not at
-/// all, or not at all and there have not been so many yet.
+/// The direction of the latest pan within the frames that a policy sees, core::kStackedFrames. kNone: no pan in all
+/// these frames. kStart: no pan, and the episode has had fewer frames than that.
 enum class PanDirection { kStart, kNone, kLeft, kRight };
 
-/// @param pans of the frames so far, the oldest first [steps]; only the last core::kStackedFrames count.
+/// @param pans the pan of each frame so far [steps], the oldest first. Only the last core::kStackedFrames are used.
 PanDirection panDirectionOver(const std::vector<int>& pans);
 
 /// Whether a frame from `orientation` shows more than the edge of an instance, if nothing occluded it.

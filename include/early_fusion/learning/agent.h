@@ -16,12 +16,12 @@
 
 namespace early_fusion::learning {
 
-/// What an agent decides from at one step of an episode. Nothing is owned.
+/// The input of an agent at one step of an episode. Nothing is owned.
 struct Situation {
   std::uint64_t episode = 0;
-  const sim::Episode* state = nullptr;  ///< the truth, for agents that may see it
-  model::Observation observation;       ///< for agents that may not
-  bool repeats = false;                 ///< observation and request are those of the step before
+  const sim::Episode* state = nullptr;  ///< the simulator's state, for the experts
+  model::Observation observation;       ///< for policies
+  bool repeats = false;                 ///< the observation equals that of the previous step
   expert::PanDirection pan_direction =
       expert::PanDirection::kStart;  ///< the pan direction over the observation's frames
 };
@@ -34,7 +34,7 @@ class Agent {
   /// @param actions receives one action for each situation.
   virtual void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) = 0;
 
-  /// Whether act() reads observation.frames: otherwise they may be missing.
+  /// Whether act() reads observation.frames. If not, the frames may be missing.
   virtual bool needsFrames() const { return false; }
 };
 
@@ -53,7 +53,7 @@ std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed);
 /// Always IDLE: a baseline.
 std::unique_ptr<Agent> makeIdleAgent();
 
-/// Repeats recorded actions. @param episodes all that the agent will meet.
+/// Repeats recorded actions. @param episodes all episodes that the agent will act in.
 std::unique_ptr<Agent> makeReplayAgent(const std::vector<EpisodeActions>& episodes);
 
 }  // namespace early_fusion::learning

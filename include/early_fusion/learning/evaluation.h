@@ -9,10 +9,10 @@
 
 namespace early_fusion::learning {
 
-/// The seed of the episodes that scores are reported on; no training session may use it.
+/// The seed of the held-out episodes, on which scores are reported. No training session may use it.
 inline constexpr std::uint64_t kHeldOutSeed = 20191104;
 
-/// How one episode went.
+/// The score of one episode.
 struct EpisodeOutcome {
   std::uint64_t episode = 0;
   sim::Score score;
@@ -22,7 +22,8 @@ struct EpisodeOutcome {
 /// The scores of a policy: means over episodes (Walsman et al. 2019, sec. IV-B).
 struct Evaluation {
   Evaluation() = default;
-  /// Of no episodes yet. @param policy_name a weights file, their id, or expert, searching, random, idle.
+  /// An evaluation without episodes. @param policy_name a weights file, an id of weights, expert, searching, random or
+  /// idle.
   Evaluation(std::string policy_name, std::string task_name, std::uint64_t episodes_seed);
 
   void add(const Trajectory& trajectory);

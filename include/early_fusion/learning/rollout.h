@@ -17,15 +17,16 @@ namespace early_fusion::learning {
 /// The trajectories have the same bits for any number of threads and of episodes in lockstep.
 class RolloutRunner {
  public:
-  /// `world` must outlive the runner. @param task, seed of the episodes, which differ in number.
+  /// `world` must outlive the runner. @param task, seed the task and the seed of all its episodes.
   RolloutRunner(const world::World& world, const sim::Task& task, std::uint64_t seed,
                 TrainingExpert training_expert = TrainingExpert::kGreedy);
 
   const sim::Task& task() const { return task_; }
   std::uint64_t seed() const { return seed_; }
 
-  /// Plays the episodes and hands over each trajectory, labelled, in the order given.
-  /// @param keep_frames whether the caller needs the frames: they are empty when neither it nor the agent does.
+  /// Plays the episodes and passes each labelled trajectory on, in the given order.
+  /// @param keep_frames whether the caller needs the frames. They are empty if neither the caller nor the agent needs
+  /// them.
   void run(const std::vector<std::uint64_t>& episodes, Agent& agent, bool keep_frames,
            const std::function<void(Trajectory)>& finished);
 
@@ -33,7 +34,7 @@ class RolloutRunner {
   void run(std::uint64_t first, int count, Agent& agent, bool keep_frames,
            const std::function<void(Trajectory)>& finished);
 
-  /// Called before every step of every episode is carried out.
+  /// Called at every step of every episode, before the action is carried out.
   using Observer = std::function<void(std::uint64_t episode, const sim::Episode& before, const TrajectoryStep& step)>;
   void setObserver(Observer observer) { observer_ = std::move(observer); }
 
@@ -50,7 +51,7 @@ class RolloutRunner {
   sim::Task task_;
   std::uint64_t seed_;
   TrainingExpert training_expert_;
-  std::vector<render::Rasterizer> rasterizers_;  // one an episode in lockstep: it keeps the shadow map
+  std::vector<render::Rasterizer> rasterizers_;  // one for each episode in lockstep: it keeps the shadow map
   Observer observer_;
 };
 

@@ -9,14 +9,14 @@
 
 namespace early_fusion::learning {
 
-/// What a training session is; the same options serve the command line and the trainer node.
+/// The options of a training session. The command line and the trainer node use the same ones.
 struct SessionOptions {
   std::string task = "simple";
   std::string preset = "fast";
   std::string world;  ///< a WorldOptions file; empty: config/world.yaml of the package
   std::uint64_t seed = 1;
   std::string output;   ///< run folder for the checkpoint, the weights, the learning curve and the result
-  bool resume = false;  ///< go on from the output folder's checkpoint where there is one
+  bool resume = false;  ///< continue from the run folder's checkpoint if there is one
   int evaluation_episodes = 500;
   model::PolicyOptions policy;
   TrainingOptions training;
@@ -24,13 +24,13 @@ struct SessionOptions {
   core::OptionSet options();
 };
 
-/// The defaults with the preset that `given` names, or the default one (config/presets/NAME.yaml or a YAML file).
-/// Nothing else of `given` is set, nor need it be a session's.
+/// The defaults and then the preset (config/presets/NAME.yaml or a YAML file) that `given` names, or else the default
+/// preset. Other entries of `given` are ignored.
 /// @throws Error naming the preset or its file, key and value.
 SessionOptions presetOptions(const core::GivenOptions& given);
 
-/// The defaults, with the preset, with what is given, in this order.
-/// @param source says where `given` comes from, as OptionSet::set() wants it.
+/// The defaults, then the preset, then the given options.
+/// @param source the origin of `given`, as in OptionSet::set().
 /// @throws Error naming source, key and value.
 SessionOptions resolveSessionOptions(const core::GivenOptions& given, const std::string& source);
 

@@ -46,21 +46,21 @@ class Trainer {
   /// The number of trajectories to add before the next round.
   int missingInRound() const { return newInRound() - new_trajectories_; }
 
-  /// Trains on the window. Call when roundDue(). @param progress told after every batch which share is done.
-  /// @throws Error when the loss or the weights are no longer finite; the trainer must not be used afterwards.
+  /// Trains on the window. Call when roundDue(). @param progress called after every batch with the finished share.
+  /// @throws Error if the loss or the weights are no longer finite. The trainer must not be used afterwards.
   RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
 
   /// The policy with everything else that restore() needs.
   nn::WeightsFile save() const;
 
-  /// Goes on from what save() gave, bit for bit.
-  /// @throws Error naming `source` and the tensor or key that is missing or doesn't fit, or where the replayed episodes
+  /// Continues from what save() returned, bit for bit.
+  /// @throws Error naming `source` and the tensor or key that is missing or does not fit; if the replayed episodes
   /// differ from the saved ones.
   void restore(const nn::WeightsFile& file, const std::string& source, const Replay& replay);
 
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
   const TrainingOptions& options() const { return options_; }
-  /// The policy that acts and is shipped: with options().weight_ema, the moving average of the trained one.
+  /// The policy that acts and is saved. With options().weight_ema, it has the moving average of the trained weights.
   model::TrainablePolicy& policy() { return ema_ ? *ema_ : *learner_; }
   const model::TrainablePolicy& policy() const { return ema_ ? *ema_ : *learner_; }
   const std::deque<Trajectory>& window() const { return window_; }
@@ -84,7 +84,7 @@ class Trainer {
   TrainingOptions options_;
   std::uint64_t seed_;
   std::unique_ptr<model::TrainablePolicy> learner_;
-  std::unique_ptr<model::TrainablePolicy> ema_;  // null where options_.weight_ema is 0
+  std::unique_ptr<model::TrainablePolicy> ema_;  // null if options_.weight_ema is 0
   nn::Adam adam_;
   std::deque<Trajectory> window_;
   int new_trajectories_ = 0;

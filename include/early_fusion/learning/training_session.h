@@ -24,19 +24,19 @@ namespace early_fusion::learning {
 /// curve.csv, options.yaml and, at the end, result.json.
 class TrainingSession {
  public:
-  /// Starts a session. With options.resume, goes on from the output folder's checkpoint if there is one.
-  /// @throws Error when the folder holds another session, the checkpoint is of other options or damaged, or the seed is
-  /// that of the held-out episodes.
+  /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.
+  /// @throws Error if the folder has another session, if the checkpoint has other options or is damaged, or if the seed
+  /// is that of the held-out episodes.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
   const SessionOptions& options() const { return options_; }
   const world::World& world() const { return *world_; }
   /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
-  /// The task of the episodes that it learns from.
+  /// The task of the training episodes.
   sim::Task trainingTask() const { return sim::withUpTo(options_.training.max_instances, task_); }
   TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.training_expert); }
-  /// Plays the episodes that the policy learns from, labelled by the training expert. The session must outlive it.
+  /// Plays training episodes and labels them with the training expert. The session must outlive it.
   RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }
   Trainer& trainer() { return *trainer_; }
   const Trainer& trainer() const { return *trainer_; }
@@ -74,8 +74,8 @@ class TrainingSession {
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;
   bool resumed_ = false;
-  double elapsed_before_sec_ = 0;          // in the session's earlier runs
-  std::uint64_t trajectories_before_ = 0;  // likewise
+  double elapsed_before_sec_ = 0;          // in earlier runs of the session
+  std::uint64_t trajectories_before_ = 0;  // in earlier runs of the session
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

@@ -13,26 +13,26 @@
 
 namespace early_fusion::learning {
 
-/// A request and what a policy that is given it should do.
+/// A request with its label.
 struct LabelledRequest {
   core::Request request;
   expert::Label label;
 };
 
-/// A frame is labelled for at most so many requests, the policy's own among them.
+/// The maximum number of labelled requests of a frame, including the policy's own.
 inline constexpr int kMaxRequestsPerFrame = 8;
 
-/// One step of a rollout as training keeps it.
+/// One step of a rollout, as training stores it.
 struct TrajectoryStep {
   /// RGB8 (image_size, image_size, 3). If nothing has changed, it shares the memory of the previous step's frame.
   std::shared_ptr<const std::vector<std::uint8_t>> frame;
   core::Request request;  ///< the policy's request
   core::Action action;    ///< the policy's action
-  expert::Label label;    ///< what the greedy expert would have done
-  /// By the training expert: the policy's own request first, then others, kMaxRequestsPerFrame at most.
+  expert::Label label;    ///< the greedy expert's
+  /// The training expert's labels: for the policy's own request first, then for others; at most kMaxRequestsPerFrame.
   std::vector<LabelledRequest> labelled_requests;
   int nearest_item = -1;  ///< the item that COLLECT or REMOVE would take; -1 if the cone is empty
-  bool repeats = false;   ///< observation and request are those of the step before
+  bool repeats = false;   ///< frames and request equal those of the previous step
 };
 
 /// A labelled rollout of one episode.
@@ -41,17 +41,17 @@ struct Trajectory {
   std::vector<TrajectoryStep> steps;
   sim::Score score;
 
-  /// What a policy sees at `step`.
+  /// The frames that a policy sees at `step`.
   core::FrameStack frameStack(std::size_t step) const;
 
-  /// Share of steps at which the policy did what the greedy expert would have done.
+  /// The share of steps at which the policy's action is the greedy expert's label.
   double agreement() const;
 };
 
-/// What it takes to play an episode again.
+/// The data from which an episode can be replayed.
 struct EpisodeActions {
   std::uint64_t episode = 0;
-  std::vector<core::Action> actions;  ///< one a step
+  std::vector<core::Action> actions;  ///< one for each step
 };
 
 /// The expert whose labels a policy learns.
@@ -70,8 +70,8 @@ TrainingExpert trainingExpertFromName(const std::string& name);
 /// the states as messages, both use it.
 class TrajectoryRecorder {
  public:
-  /// @param key of the episode: with the step, it decides which other requests a frame is labelled for.
-  /// @param episode whose instances are labelled; need not outlive the constructor.
+  /// @param key names the episode. With the step, it determines the other requests that a frame is labelled for.
+  /// @param episode the episode that is labelled. It need not outlive the constructor.
   TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
                      TrainingExpert training_expert = TrainingExpert::kGreedy);
 

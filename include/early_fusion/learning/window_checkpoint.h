@@ -13,14 +13,15 @@ namespace early_fusion::learning {
 /// Plays episodes again. @return their trajectories in the given order.
 using Replay = std::function<std::vector<Trajectory>(const std::vector<EpisodeActions>& episodes)>;
 
-/// Adds the trainer's window to a checkpoint: of each trajectory its episode, the actions and a checksum. Frames and
-/// labels are left out; a replay of the actions gives them back. All trajectories must have the same number of steps.
+/// Adds the trainer's window to a checkpoint: the episode, the actions and a checksum of each trajectory. Frames and
+/// labels are left out, because a replay of the actions restores them. All trajectories must have the same number of
+/// steps.
 void storeWindow(const std::deque<Trajectory>& window, nn::WeightsFile& file);
 
 /// Reads what storeWindow() added, and replays it.
 /// @param max_trajectories the window's size.
-/// @throws Error naming `source` and the tensor that is missing or doesn't fit, or where the replayed episodes differ
-/// from the stored ones.
+/// @throws Error naming `source` and the tensor that is missing or does not fit; if the replayed episodes differ from
+/// the stored ones.
 std::deque<Trajectory> restoreWindow(const nn::WeightsFile& file, const std::string& source, int max_trajectories,
                                      const Replay& replay);
 

@@ -4,8 +4,8 @@
 
 namespace early_fusion::model {
 
-/// Early Fusion (Walsman et al. 2019, sec. III-D): an embedding of the request is tiled over the output of one of the
-/// first blocks, so that most of the vision sees what it is looking for. The features are the last map.
+/// Early Fusion (Walsman et al. 2019, sec. III-D): the embedding of the request is tiled over the output of one of the
+/// first blocks, so that the later blocks depend on the request. The features are the last map.
 class EarlyFusion : public NetworkPolicy {
  public:
   EarlyFusion(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed);

@@ -12,8 +12,9 @@
 
 namespace early_fusion::model {
 
-/// What all kinds do alike: a trunk makes maps of frame stacks, an encoder makes goals of requests, a head makes
-/// actions of features. A kind says how features come of maps and goals, and adds no parameters.
+/// The base class of all kinds. The trunk computes maps from frame stacks, the encoder computes goals from requests,
+/// and the head computes actions from features. A kind defines how features are computed from maps and goals. It has no
+/// parameters of its own.
 ///
 /// Parameters: block1 to block4 (conv, norm), embedding, hidden, output.
 class NetworkPolicy : public TrainablePolicy {
@@ -28,7 +29,7 @@ class NetworkPolicy : public TrainablePolicy {
   double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) override;
 
  protected:
-  /// @param feature_count numbers that the head decides from.
+  /// @param feature_count the number of inputs of the head.
   NetworkPolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed,
                 const VisionTrunkShape& trunk_shape, int feature_count);
 
@@ -61,10 +62,10 @@ class NetworkPolicy : public TrainablePolicy {
   bool weights_stale_ = true;
   bool statistics_stale_ = true;
 
-  // A training step's, one row a sample.
+  // Of a training step, one row for each sample.
   SampleBatch batch_;
   nn::Matrix goals_, dgoals_, features_, dfeatures_;
-  // Inference's: one row an observation, then one row a thread.
+  // Of inference: first one row for each observation, then one row for each thread.
   nn::Matrix predict_counts_, predict_goals_, thread_features_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace early_fusion::model {
 
-/// What a policy decides from. Nothing is owned.
+/// The input of a policy. Nothing is owned.
 struct Observation {
   core::FrameStack frames{};
   const core::Request* request = nullptr;

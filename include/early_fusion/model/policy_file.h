@@ -10,10 +10,10 @@
 
 namespace early_fusion::model {
 
-/// Reads a policy from a weights file's contents (see nn/weights_file.h), which may hold more: a checkpoint does.
-/// @param source names the file in errors. @param precision overrides the option when not empty.
-/// @throws Error naming source and the tensor or metadata key that is missing or not allowed; when the file's actions
-/// are not this program's; when it does not say the field of view.
+/// Reads a policy from the contents of a weights file (see nn/weights_file.h). Other contents, as in a checkpoint, are
+/// ignored. @param source names the file in errors. @param precision overrides the option if it is not empty.
+/// @throws Error naming source and the tensor or metadata key that is missing or not allowed; if the format is older,
+/// if the actions are not this program's, or if the field of view is missing.
 std::unique_ptr<TrainablePolicy> loadPolicy(const nn::WeightsFile& file, const std::string& source,
                                             const std::string& precision = "");
 

@@ -10,12 +10,12 @@
 namespace early_fusion::model {
 
 struct PolicyHeadShape {
-  int features;    ///< numbers that it decides from
+  int features;    ///< number of inputs
   int channels;    ///< of the hidden layer, at most kMaxChannels
   double dropout;  ///< after the hidden layer
 };
 
-/// Makes actions of features: a hidden layer with ReLU and dropout, an output layer, softmax.
+/// Computes action probabilities from features: a hidden layer with ReLU and dropout, an output layer, softmax.
 class PolicyHead {
  public:
   /// Adds "hidden.*" and "output.*" to `parameters`, which must outlive the head.
@@ -24,13 +24,13 @@ class PolicyHead {
   void initialise(core::Random& random);
 
   /// Training: features (rows, features) -> the weighted mean of cross-entropy and unlikelihood over the batch's rows.
-  /// @param dropout_seed decides the dropout mask.
+  /// @param dropout_seed determines the dropout mask.
   double forward(const nn::Matrix& features, const SampleBatch& batch, std::uint64_t dropout_seed);
 
   /// Backward of the last forward(): the same features -> the gradients of the parameters, and dfeatures.
   void backward(const nn::Matrix& features, nn::Matrix& dfeatures);
 
-  /// Inference of one row: features (features) -> probabilities (actions). Threads may call at a time.
+  /// Inference of one row: features (features) -> probabilities (actions). Several threads may call at the same time.
   void predict(const float* features, float* probabilities) const;
 
  private:

@@ -11,23 +11,23 @@
 
 namespace early_fusion::model {
 
-/// A way in which goal and vision meet.
+/// A kind of policy: a way to combine the goal with the vision.
 struct PolicyKind {
   std::string name;                  ///< PolicyOptions::kind
-  std::vector<std::string> options;  ///< names of the others of PolicyOptions that its network depends on
+  std::vector<std::string> options;  ///< the PolicyOptions that its network depends on, without `kind`
   std::unique_ptr<TrainablePolicy> (*make)(const PolicyOptions& options, const core::Vocabulary& vocabulary,
                                            std::uint64_t seed);
 };
 
-/// All there are.
+/// All kinds.
 const std::vector<PolicyKind>& policyKinds();
 std::vector<std::string> policyKindNames();
 
-/// @throws Error when there is none of this name, listing those there are.
+/// @throws Error for an unknown name, listing the known ones.
 const PolicyKind& policyKind(const std::string& name);
 
-/// A policy of the kind that the options name, with fresh weights drawn from `seed` (PyTorch's default initialisation).
-/// @throws Error naming an option whose value is not allowed, or when the vocabulary is empty.
+/// A policy of the kind `options.kind` with initial weights drawn from `seed` (PyTorch's default initialisation).
+/// @throws Error naming an option whose value is not allowed; if the vocabulary is empty.
 std::unique_ptr<TrainablePolicy> makePolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary,
                                             std::uint64_t seed);
 

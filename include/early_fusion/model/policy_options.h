@@ -12,17 +12,17 @@ inline constexpr int kMaxChannels = 256;
 /// The choices of PolicyOptions::precision.
 inline std::vector<std::string> precisionNames() { return {"auto", "f32", "bf16"}; }
 
-/// The network, and the frames that it sees. PolicyKind says which of these a kind reads.
+/// The options of a network and of its frames. PolicyKind::options names those that a kind reads.
 struct PolicyOptions {
   std::string kind = "early_fusion";
-  int channels = 16;               ///< of every block, of the hidden layer and of the embedding
-  int fusion_block = 1;            ///< the goal joins the output of this block; 0: the image itself
+  int channels = 16;               ///< width of every block, of the hidden layer and of the embedding
+  int fusion_block = 1;            ///< the goal joins the output of this block; 0: the frame stack itself
   double dropout = 0.5;            ///< after the hidden layer
   int image_size = 128;            ///< [px]
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes faster in it
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 if the processor computes faster in it
 
-  /// Horizontal field of view of the frames [degrees]. Not an option: that of the world that the policy is trained in,
-  /// or what the weights file says.
+  /// Horizontal field of view of the frames [degrees]. Not an option: it comes from the world that the policy is
+  /// trained in, or from the weights file.
   double horizontal_fov_deg = 60;
 
   core::OptionSet options();

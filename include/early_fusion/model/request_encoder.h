@@ -8,8 +8,8 @@
 
 namespace early_fusion::model {
 
-/// Writes how often each of `items` items is requested: counts (items).
-/// @param index of the observation, for errors. @throws Error when it has no request, or requests an unknown item.
+/// Writes the number of requested instances of each item to counts (items).
+/// @param index the observation's index, for errors. @throws Error if it has no request or requests an unknown item.
 void countItems(const Observation& observation, std::size_t index, int items, float* counts);
 
 /// Embeds a request as a goal vector: a linear layer over the items' counts (Walsman et al. 2019, sec. III-C).
@@ -29,7 +29,7 @@ class RequestEncoder {
     embedding_.backward(counts, dgoals, rows, nullptr);
   }
 
-  /// One row, counts (items) -> goal (channels): the same bits whoever calls it.
+  /// One row, counts (items) -> goal (channels). The bits do not depend on the calling thread.
   void predict(const float* counts, float* goal) const { embedding_.forwardRow(counts, goal); }
 
  private:

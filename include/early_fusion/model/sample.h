@@ -7,13 +7,13 @@
 
 namespace early_fusion::model {
 
-/// An observation and what the policy should do there.
+/// A training sample: an observation and its target.
 struct Sample {
   Observation observation;
   std::array<float, core::kActionCount> target{};  ///< a distribution over actions; one-hot for a single label
-  /// Weights of the unlikelihood loss, nn::unlikelihoodLoss(), of what the policy must not do there.
+  /// Weights of the unlikelihood loss of harmful actions; see nn::unlikelihoodLoss().
   std::array<float, core::kActionCount> unlikelihood{};
-  float weight = 1.f;  ///< of its loss in the batch's mean, >= 0
+  float weight = 1.f;  ///< weight of its loss in the batch's mean, >= 0
 };
 
 }  // namespace early_fusion::model

@@ -8,15 +8,16 @@
 
 namespace early_fusion::model {
 
-/// The samples of a training step as the layers take them, one row a sample. Neighbouring samples with the same frames
-/// share a frame stack. Matrices may have more rows than there are samples: what an earlier batch left.
+/// The samples of a training step as inputs of the layers, one row for each sample. Neighbouring samples with the same
+/// frames share a frame stack. Matrices may have more rows than there are samples. The further rows are left from
+/// earlier batches and must be ignored.
 class SampleBatch {
  public:
-  /// @param items that the policy knows.
+  /// @param items the number of items that the policy knows.
   explicit SampleBatch(int items) : items_(items) {}
 
-  /// Takes the samples; their frames must outlive the batch.
-  /// @throws Error where there is none, a request or weight is not allowed, or all weights are 0.
+  /// Sets the samples. Their frames must outlive the batch.
+  /// @throws Error if there is no sample, if a request or a weight is not allowed, or if all weights are 0.
   void assign(const std::vector<Sample>& samples);
 
   int rows() const { return rows_; }

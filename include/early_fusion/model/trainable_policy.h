@@ -10,7 +10,7 @@
 
 namespace early_fusion::model {
 
-/// A policy whose weights can be read, written and learnt. The same weights, samples and thread count give the same
+/// A policy whose weights can be read, written and trained. The same weights, samples and thread count give the same
 /// bits.
 class TrainablePolicy : public GoalPolicy {
  public:
@@ -18,16 +18,16 @@ class TrainablePolicy : public GoalPolicy {
   virtual nn::Parameters& parameters() = 0;
   virtual const nn::Parameters& parameters() const = 0;
 
-  /// Call after writing parameters() from outside (an optimizer's step, a loaded file).
+  /// Must be called after parameters() were changed from outside (an optimizer's step, a loaded file).
   virtual void parametersChanged() = 0;
 
-  /// Which statistics lossAndGradients() normalises with: the batch's until this is called.
+  /// Sets the statistics that lossAndGradients() normalises with. Initially the batch's.
   virtual void setNormalisation(nn::Normalisation normalisation) = 0;
 
   /// Forward with dropout, then backward: fills parameters().gradients() with the gradient of the weighted mean of
   /// cross-entropy and unlikelihood, and updates the running statistics. Neighbouring samples with the same frames
-  /// share the work that their goals have no part in, and count as one image in the batch statistics up to there.
-  /// @param dropout_seed decides the dropout mask. @return the loss.
+  /// share the computation before the goal joins, and count as one image in the batch statistics of that part.
+  /// @param dropout_seed determines the dropout mask. @return the loss.
   virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
 };
 

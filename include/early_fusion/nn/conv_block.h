@@ -21,7 +21,7 @@ struct ConvBlockShape {
   float input_scale = 1.f;  ///< the block computes with input_scale * x
 };
 
-/// A batch divided into shares. Within a share, the images' weight gradients are added in order, by one thread. The
+/// A batch that is divided into shares. Within a share, one thread adds the images' weight gradients in order. The
 /// shares do not depend on the number of threads, so neither do the bits of the sum.
 struct ImageShares {
   explicit ImageShares(int batch) : images(batch), count(batch < kMost ? batch : kMost) {}
@@ -109,12 +109,12 @@ class ConvBlock {
   NormGradient norm_gradient_{};
 
   AlignedBuffer<T> pooled_;               // (images, size/2, size/2, out)
-  AlignedBuffer<std::uint8_t> choices_;   // likewise
-  AlignedBuffer<T> output_gradients_;     // likewise
+  AlignedBuffer<std::uint8_t> choices_;   // (images, size/2, size/2, out)
+  AlignedBuffer<T> output_gradients_;     // (images, size/2, size/2, out)
   AlignedBuffer<float> border_bias_;      // (threads, 9, out)
   AlignedBuffer<float> staging_;          // (out, image, 3, 3)
   AlignedBuffer<float> share_gradients_;  // (shares, weights in the convolution's layout)
-  AlignedBuffer<float> image_gradients_;  // (threads, likewise)
+  AlignedBuffer<float> image_gradients_;  // (threads, weights in the convolution's layout)
 };
 
 }  // namespace early_fusion::nn

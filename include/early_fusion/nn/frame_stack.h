@@ -7,8 +7,8 @@
 
 namespace early_fusion::nn {
 
-/// Channels of the first layer's input: the RGB of a frame stack. They are differences of bytes, which floats and
-/// bfloat16 hold exactly.
+/// Channels of the first layer's input: the RGB of a frame stack. Its numbers are differences of bytes, which floats
+/// and bfloat16 represent exactly.
 inline constexpr int kImageChannels = 3 * core::kStackedFrames;
 
 /// The newest frame enters as (byte - kMiddleByte) * kByteScale, in [-2, 2). Each older frame enters as the difference
@@ -20,9 +20,8 @@ inline constexpr int kImageChannels = 3 * core::kStackedFrames;
 inline constexpr int kMiddleByte = 128;
 inline constexpr float kByteScale = 1.f / 64.f;
 
-/// Lays the frames side by side: x (pixels, kImageChannels), as the network sees them but for kByteScale; the newest
-/// frame's red, green and blue first. Pixels before first_pixel and from last_pixel on are left alone, so that several
-/// threads can share an image.
+/// Writes the frame stack to x (pixels, kImageChannels), without the factor kByteScale. The newest frame's red, green
+/// and blue come first. Writes only pixels [first_pixel, last_pixel), so that several threads can share an image.
 template <class T>
 void stackFrames(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x);
 

@@ -9,7 +9,7 @@
 
 namespace early_fusion::nn {
 
-/// The upper half of a float: the range of a float with 8 significant bits. For storage; arithmetic is done in float.
+/// The upper half of a float: a float's range with 8 significant bits. Only for storage; arithmetic is done in float.
 struct bfloat16 {
   std::uint16_t bits;
 };

@@ -20,7 +20,7 @@ struct WeightsFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, StoredTensor> tensors;
 
-  /// @throws Error naming `source` (a path or a topic), the tensor or key, and what is wrong with it.
+  /// @throws Error naming `source` (a path or a topic), the tensor or key, and the fault.
   static WeightsFile parse(const std::string& bytes, const std::string& source);
   static WeightsFile read(const std::string& path);
 

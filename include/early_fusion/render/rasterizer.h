@@ -18,13 +18,13 @@ namespace early_fusion::render {
 class Rasterizer {
  public:
   /// `world` must outlive the rasterizer. @param image_size edge of the square image [px], see core::addImageSize().
-  /// @throws Error otherwise.
+  /// @throws Error if it is another.
   Rasterizer(const world::World& world, int image_size);
   ~Rasterizer();
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  /// Sets which objects are drawn, and where. Cheap when nothing has changed; otherwise the shadow map is drawn anew.
+  /// Sets the objects that are drawn, with their poses. Draws the shadow map again if something has changed.
   void setObjects(const std::vector<world::ObjectPose>& objects);
 
   /// Draws a frame. If neither the scene nor the camera has changed since the last frame, it is copied.

@@ -10,7 +10,7 @@ namespace early_fusion::sim {
 /// Half-angle of the cone about the optical axis within which COLLECT and REMOVE act (Walsman et al. 2019, sec. IV-A).
 inline constexpr double kConeHalfAngleRad = 3.0 * 3.14159265358979323846 / 180.0;
 
-/// For every orientation, the instances whose hull meets the cone, nearest first.
+/// The instances whose hull meets the cone, for every orientation, nearest first.
 ///
 /// It is computed once for each scene. The rules of an episode and the experts read the same table, so they cannot
 /// disagree.
@@ -38,8 +38,8 @@ class ConeTable {
   /// All orientations at which an instance is in the cone.
   const std::vector<world::Orientation>& orientationsOf(int instance) const { return orientations_of_[instance]; }
 
-  /// Of orientationsOf(instance), the share at which `instance` is the nearest of `present`. `instance` must be
-  /// present. 0: fully occluded; 1: never occluded.
+  /// The share of orientationsOf(instance) at which `instance` is the nearest of `present`. `instance` must be present.
+  /// 0: fully occluded; 1: never occluded.
   double exposure(int instance, InstanceMask present) const;
 
  private:

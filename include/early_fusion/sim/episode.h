@@ -30,13 +30,13 @@ class Episode {
   /// The episode that `key` names. `world` must outlive it. @throws Error as sampleEpisode().
   Episode(const world::World& world, const EpisodeKey& key) : Episode(world, key.task, sampleEpisode(world, key)) {}
 
-  /// One that begins otherwise.
+  /// An episode with a given start.
   Episode(const world::World& world, const Task& task, EpisodeSetup setup);
 
   const EpisodeSetup& setup() const { return setup_; }
   const EpisodeState& state() const { return state_; }
   const ConeTable& cone() const { return *cone_; }
-  /// The same table, for users that outlive the episode, such as the labelling of its states.
+  /// The same table for users that outlive the episode, such as TrajectoryRecorder.
   std::shared_ptr<const ConeTable> sharedCone() const { return cone_; }
 
   bool finished() const { return state_.step >= steps_; }

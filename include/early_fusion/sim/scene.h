@@ -27,11 +27,12 @@ struct Instance {
 /// Bit i is set while instance i is still on the counter.
 using InstanceMask = std::uint32_t;
 
-/// Names an episode. Processes with the same world begin the same key with the same scene, request and orientation.
+/// Names an episode. With the same world, the same key gives the same scene, request and first orientation in every
+/// process.
 struct EpisodeKey {
-  Task task;                 ///< with max_instances, on which the scene depends, too
+  Task task;                 ///< including max_instances, because the scene depends on it
   std::uint64_t seed = 0;    ///< of the session
-  std::uint64_t number = 0;  ///< of the episode in the session, from 0
+  std::uint64_t number = 0;  ///< the episode's number in the session, from 0
 };
 
 /// The initial state of an episode.
@@ -43,7 +44,7 @@ struct EpisodeSetup {
 
 Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& instance);
 
-/// The poses of the instances that are present, in their order: what the rasterizer draws.
+/// The poses of the present instances, in their order, for the rasterizer.
 std::vector<world::ObjectPose> presentObjects(const world::World& world, const std::vector<Instance>& instances,
                                               InstanceMask present);
 

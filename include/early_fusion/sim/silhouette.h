@@ -28,7 +28,7 @@ class Silhouette {
     Eigen::Vector3d start;       // unit vector
     Eigen::Vector3d normal;      // of the edge's great circle, pointing inside; unit vector
     Eigen::Vector3d past_start;  // a direction's dot product is positive if it lies beyond the start
-    Eigen::Vector3d past_end;    // likewise, before the end
+    Eigen::Vector3d past_end;    // a direction's dot product is positive if it lies before the end
   };
 
   bool contains(const Eigen::Vector3d& axis) const;

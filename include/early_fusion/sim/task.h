@@ -7,12 +7,12 @@
 
 namespace early_fusion::sim {
 
-/// A task file: how hard an episode is (Walsman et al. 2019, sec. IV-A). The defaults are those of SIMPLE.
+/// The contents of a task file (Walsman et al. 2019, sec. IV-A). The defaults are those of SIMPLE.
 struct Task {
   std::string name = "custom";
   int instances = 4;      ///< objects on the counter, items drawn with repetition; at most kMaxInstances
-  int max_instances = 0;  ///< not an option, see withUpTo(): each episode draws its number up to this
-  int requested = 1;      ///< how many of the instances are requested
+  int max_instances = 0;  ///< not an option; see withUpTo(). The maximum number of objects that an episode draws
+  int requested = 1;      ///< the number of requested instances
   int steps = 48;         ///< actions in an episode
 
   core::OptionSet options();
@@ -27,7 +27,7 @@ inline constexpr int kMaxInstances = 32;
 /// @throws Error naming file, key and value, or the known names.
 Task loadTask(const std::string& name_or_file);
 
-/// The task for training episodes with up to `most` instances. The task itself if it has that many already.
+/// The task for training episodes with up to `most` instances. Returns the task itself if it has that many already.
 /// @throws Error if `most` is more than kMaxInstances.
 Task withUpTo(std::int64_t most, Task task);
 

@@ -4,7 +4,7 @@
 
 namespace early_fusion::world {
 
-/// Where an object of the object set is.
+/// An object of the object set and its pose.
 struct ObjectPose {
   int item = 0;                         ///< index into the object set
   Eigen::Isometry3d world_from_object;  ///< [m]

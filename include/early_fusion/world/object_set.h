@@ -25,7 +25,7 @@ class ObjectSet {
  public:
   ObjectSet() = default;
 
-  /// A set of given objects. @throws Error if a name is empty or is listed twice.
+  /// A set of the given objects. @throws Error if a name is empty or is listed twice.
   explicit ObjectSet(std::vector<Object> objects) : objects_(std::move(objects)), vocabulary_(namesOf(objects_)) {}
 
   /// Reads `objects: [{name, mesh, scale}, ...]`; mesh paths are relative to the YAML file.

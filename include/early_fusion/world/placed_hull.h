@@ -8,8 +8,8 @@ class btConvexHullShape;
 
 namespace early_fusion::world {
 
-/// A convex hull at a pose in the world. Bullet's GJK computes distances, to within 0.02 mm or 0.1 %, whichever is
-/// more. Immutable.
+/// A convex hull at a pose in the world. Bullet's GJK computes its distances with an error of at most 0.02 mm or 0.1 %,
+/// whichever is larger. Immutable.
 class PlacedHull {
  public:
   /// @param corners in the object's frame [m]; at least one.
@@ -18,13 +18,13 @@ class PlacedHull {
   PlacedHull(PlacedHull&&) noexcept;
   PlacedHull& operator=(PlacedHull&&) noexcept;
 
-  /// In the world frame [m].
+  /// The corners in the world frame [m].
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
   /// The mean of the corners, which is inside the hull, in the world frame [m].
   const Eigen::Vector3d& center() const { return center_; }
   /// The radius of the ball about center() that contains the hull [m].
   double radius() const { return radius_; }
-  /// Parallel to the world's axes [m].
+  /// The bounding box along the world's axes [m].
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 
   /// The smallest distance [m] between two hulls; 0 if they meet.

@@ -37,7 +37,7 @@ struct TexturedMesh {
 /// Loads any mesh that assimp reads, with its diffuse textures or colours. Computes smooth normals if the file has
 /// none. A mesh with more than `max_triangles` is simplified to that number, with a note on stderr.
 /// @param scale converts the file's coordinates to metres.
-/// @throws Error naming `path` and what is missing or broken (no triangles, unreadable texture, not finite).
+/// @throws Error naming `path` and the fault (no triangles, unreadable texture, numbers that are not finite).
 TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles);
 
 }  // namespace early_fusion::world

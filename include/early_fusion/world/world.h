@@ -12,7 +12,8 @@
 
 namespace early_fusion::world {
 
-/// A world file: which files make the world, and how the camera sees it. The defaults are those of config/world.yaml.
+/// The contents of a world file: the object set, the URDFs, the placement and the camera's image. The defaults are
+/// those of config/world.yaml.
 struct WorldOptions {
   std::string objects = "objects.yaml";
   std::string kitchen_urdf = "../urdf/kitchen.urdf";
@@ -21,10 +22,10 @@ struct WorldOptions {
   std::string tilt_joint = "tilt_joint";
   std::string optical_frame = "camera_optical_frame";
   std::string counter_link = "counter";  ///< objects stand on its collision box
-  double placement_width = 1.1;          ///< [m] along y: the extent of the objects' centres, centred on the counter
-  double placement_depth = 0.58;         ///< [m] along x, likewise
+  double placement_width = 1.1;          ///< [m] along y; the objects' centres lie in this area, centred on the counter
+  double placement_depth = 0.58;         ///< [m] along x; as placement_width
   double clearance = 0.005;              ///< [m] between two objects, and between an object and the kitchen
-  double max_overhang = 0.03;            ///< [m] of an object over an edge of the counter's top
+  double max_overhang = 0.03;            ///< [m] by which an object may overhang an edge of the counter's top
   int image_size = 128;                  ///< [px]
   double horizontal_fov_deg = 60.0;
   int max_triangles = 2000;
@@ -50,10 +51,10 @@ struct World {
   ObjectSet objects;
   CameraRig rig;
   std::vector<FixedMesh> kitchen;
-  /// Of the kitchen's collision shapes, those that rise above the counter's top.
+  /// The kitchen's collision shapes that rise above the counter's top.
   std::vector<std::shared_ptr<const PlacedHull>> obstacles;
   HorizontalRectangle counter_top;
-  HorizontalRectangle placement;  ///< on the counter's top: where the centres of objects may lie
+  HorizontalRectangle placement;  ///< the area for the objects' centres, on the counter's top
 };
 
 /// @param world_file a WorldOptions file; empty: the package's config/world.yaml. Paths in it are relative to it.
@@ -66,8 +67,8 @@ struct WorldUrdfs {
   std::string kitchen;
 };
 
-/// What a world file names as its URDFs, without loading them. @param world_file as loadWorld() takes it.
-/// @throws Error as loadWorld() does for the world file itself.
+/// The paths of the URDFs that a world file names. The URDFs are not read. @param world_file as in loadWorld().
+/// @throws Error as loadWorld() for the world file itself.
 WorldUrdfs findUrdfs(const std::string& world_file);
 
 }  // namespace early_fusion::world

@@ -23,16 +23,17 @@ constexpr int kImageQueue = 30;
 
 core::OptionSet PolicyNode::Options::options() {
   core::OptionSet set("policy");
-  set.add("weights", weights, "weights file to act with; empty: those of the topic 'weights' or the service");
+  set.add("weights", weights, "weights file; empty: wait for the topic 'weights' or the service 'load_weights'");
   set.addChoice("mode", acting.mode, model::actionChoiceNames(), "how weights from a file choose actions");
   set.add("seed", acting.seed, "seed of drawn actions");
   set.addChoice("precision", acting.precision, model::precisionNames(),
-                "of the arithmetic with weights from a file; auto: bf16 where the processor computes faster in it");
-  set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
-  set.add("annotated_scale", annotated_scale, 1, 16, "", "pixels of the annotated image for each that the policy sees");
-  set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "at most so many annotated images a second");
+                "arithmetic of weights from a file; auto: bf16 if the processor computes faster in it, else f32");
+  set.add("image_transport", image_transport, "how images are received: raw, compressed, or another installed plugin");
+  set.add("annotated_scale", annotated_scale, 1, 16, "", "enlargement of the annotated image");
+  set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "maximum number of annotated images a second");
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
-          "along an edge of the saliency map that tints the annotated image; costs its square in predictions; 0: none");
+          "edge of the grid of occlusion saliency that tints the annotated image; costs one prediction for each cell; "
+          "0: no tint");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -66,7 +67,7 @@ void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image, const RequestC
   health_.count("images");
   if (!policy_.loaded()) {
     return health_.drop("image without weights",
-                        "no weights yet: give ~weights, call 'load_weights', or publish them on 'weights'");
+                        "no weights yet; set ~weights, call 'load_weights', or publish them on 'weights'");
   }
   const bool again = answer_valid_ && answer_.header.stamp == request->header.stamp &&
                      answer_.episode == request->episode && answer_.step == request->step;
@@ -120,14 +121,14 @@ void PolicyNode::loadFile(const std::string& path) {
   nn::WeightsFile file = nn::WeightsFile::read(path);
   const auto id = file.metadata.find("id");
   load(id == file.metadata.end() ? path : id->second, std::move(file), path, options_.acting);
-  ROS_INFO("acting with weights '%s' from %s", weights_id_.c_str(), path.c_str());
+  ROS_INFO("using weights '%s' from %s", weights_id_.c_str(), path.c_str());
 }
 
 bool PolicyNode::onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response) {
   try {
     loadFile(request.path);
     response.success = true;
-    response.message = "acting with weights '" + weights_id_ + "'";
+    response.message = "using weights '" + weights_id_ + "'";
   } catch (const core::Error& error) {
     response.success = false;
     response.message = error.what();

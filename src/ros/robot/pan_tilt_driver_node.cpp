@@ -41,12 +41,12 @@ std_msgs::Float64 angleMessage(int steps) {
 
 core::OptionSet PanTiltDriverNode::Options::options() {
   core::OptionSet set("pan_tilt_driver");
-  set.add("urdf", urdf, "with the pan-tilt unit's joints and limits; empty: the package's urdf/pan_tilt_camera.urdf");
-  set.add("pan_joint", pan_joint, "its name in the URDF and in the joint states");
-  set.add("tilt_joint", tilt_joint, "likewise");
-  set.add("optical_frame", optical_frame, "link in the URDF that the camera looks along (z forward, x right, y down)");
+  set.add("urdf", urdf, "URDF with the joints and limits; empty: the package's urdf/pan_tilt_camera.urdf");
+  set.add("pan_joint", pan_joint, "name of the pan joint in the URDF and in the joint states");
+  set.add("tilt_joint", tilt_joint, "name of the tilt joint in the URDF and in the joint states");
+  set.add("optical_frame", optical_frame, "the camera's link in the URDF (z forward, x right, y down)");
   set.add("use_joint_states", use_joint_states,
-          "start from where 'joint_states' says the joints are; false: go to the middle of the limits at first");
+          "start from the joints' positions; false: move to the middle of the limits first");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -82,8 +82,8 @@ void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
 void PanTiltDriverNode::onAction(const Action& message) {
   if (!message.header.stamp.isZero() && message.header.stamp < latest_request_) {
     std::ostringstream detail;
-    detail << message.name << " answers the image of " << message.header.stamp << ", but that of " << latest_request_
-           << " is asked about; raise answer_timeout of request_node where the policy needs longer";
+    detail << message.name << " answers the image of " << message.header.stamp << ", but the latest request has "
+           << latest_request_ << "; increase answer_timeout of request_node if the policy needs longer";
     return health_.drop("late action", detail.str());
   }
   if (!target_) {

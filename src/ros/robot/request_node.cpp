@@ -26,11 +26,12 @@ std::vector<std::string> splitItems(const std::string& text) {
 
 core::OptionSet RequestNode::Options::options() {
   core::OptionSet set("request");
-  set.add("items", items, "what is asked for at first: names separated by commas; the service changes it");
+  set.add("items", items, "the first request: names, separated by commas; the service 'set_request' changes it");
   set.add("rate", rate_hz, 0.01, 1000, "Hz",
-          "at most so many images a second are asked about, 1 / rate after an action or later: let the camera settle");
-  set.add("answer_timeout", answer_timeout_sec, 0.05, 3600, "s", "ask about another image when no action has come");
-  set.add("image_transport", image_transport, "how images are received: raw, or what a transport plugin offers");
+          "maximum number of images a second; the camera must stand still for its image");
+  set.add("answer_timeout", answer_timeout_sec, 0.05, 3600, "s",
+          "take another image if no action has arrived for this long; must be longer than one decision takes");
+  set.add("image_transport", image_transport, "how images are received: raw, compressed, or another installed plugin");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -38,7 +39,7 @@ core::OptionSet RequestNode::Options::options() {
 RequestNode::RequestNode(const Options& options)
     : options_(options),
       health_(
-          [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("asks for", itemList(items_)); }),
+          [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("requests", itemList(items_)); }),
       items_(splitItems(options.items)),
       request_publisher_(node_.advertise<Request>(kRequestTopic, 10)),
       image_transport_(node_) {
@@ -56,7 +57,7 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   if (settled_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
   if (waiting_)
     health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
-                                           "; is the policy running, with weights that know the items?");
+                                           "; check that the policy runs and that its weights know the items");
   asked_.header = image->header;
   asked_.episode = 0;
   asked_.step = step_;
@@ -77,7 +78,7 @@ void RequestNode::onAction(const Action& action) {
 bool RequestNode::onSetRequest(SetRequest::Request& request, SetRequest::Response& response) {
   items_ = request.items;
   response.success = true;
-  response.message = "asking for " + itemList(items_);
+  response.message = "requesting " + itemList(items_);
   return true;
 }
 

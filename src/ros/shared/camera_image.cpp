@@ -14,7 +14,7 @@ namespace early_fusion::nodes {
 int cropEdge(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* info, double horizontal_fov_deg) {
   const int shorter = static_cast<int>(std::min(image.width, image.height));
   if (info == nullptr || !(info->K[0] > 0) || info->width == 0) return shorter;
-  // A camera that bins its pixels may give the intrinsics of the full size.
+  // A camera that bins pixels may publish the intrinsics of its full size.
   const double focal_length = info->K[0] * image.width / info->width;
   const long edge = std::lround(2 * focal_length * std::tan(horizontal_fov_deg * M_PI / 360));
   return static_cast<int>(std::min<long>(std::max<long>(edge, 1), shorter));

@@ -7,7 +7,7 @@ namespace early_fusion::nodes {
 namespace {
 
 constexpr double kWarningPeriodSec = 5.0;
-constexpr double kUpdatePeriodSec = 0.5;  // how often the updater looks whether its own period has passed
+constexpr double kUpdatePeriodSec = 0.5;  // the interval at which the updater checks whether its own period has passed
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void Health::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
 }
 
 void addDiagnosticPeriod(core::OptionSet& options, double& period_sec) {
-  options.add("diagnostic_period", period_sec, 0.1, 3600, "s", "between two reports on /diagnostics");
+  options.add("diagnostic_period", period_sec, 0.1, 3600, "s", "time between two reports on /diagnostics");
 }
 
 }  // namespace early_fusion::nodes

@@ -30,7 +30,7 @@ visualization_msgs::Marker meshMarker(const world::Object& object, const Eigen::
   marker.type = visualization_msgs::Marker::MESH_RESOURCE;
   marker.mesh_resource = meshUrl(object.mesh_file);
   marker.mesh_use_embedded_materials = true;
-  // rviz scales the file's coordinates and then moves them, the object set moves its scaled mesh to the origin.
+  // rviz scales the file's coordinates and then applies the pose. The object set moves its scaled mesh to the origin.
   marker.pose = poseMessage(world_from_object * Eigen::Translation3d(-object.mesh_origin));
   marker.scale.x = object.mesh_scale.x();
   marker.scale.y = object.mesh_scale.y();

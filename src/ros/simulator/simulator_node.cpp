@@ -11,12 +11,12 @@ namespace early_fusion::nodes {
 core::OptionSet SimulatorNode::Options::options() {
   core::OptionSet set("simulator");
   set.add("world", world, "world file; empty: the package's config/world.yaml");
-  set.add("task", task, "simple, medium, hard or a YAML file: of free_run, and of reset without a task");
-  set.add("seed", seed, "of the episodes of free_run");
+  set.add("task", task, "task of free_run, and of 'reset' without a task: simple, medium, hard, or a task's YAML file");
+  set.add("seed", seed, "seed of the episodes of free_run");
   set.add("free_run", free_run, "play episode after episode while no goal is played");
-  set.add("rate", rate_hz, 0, 10000, "Hz", "at most so many steps a second; 0: as fast as actions come");
-  set.add("republish", republish_sec, 0.05, 3600, "s", "publish a step again when no action has come for so long");
-  set.add("marker_rate", marker_rate_hz, 0.1, 100, "Hz", "at most so many marker messages a second");
+  set.add("rate", rate_hz, 0, 10000, "Hz", "maximum number of steps a second; 0: no limit");
+  set.add("republish", republish_sec, 0.05, 3600, "s", "publish a step again if no action has arrived for this long");
+  set.add("marker_rate", marker_rate_hz, 0.1, 100, "Hz", "maximum number of marker messages a second");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -49,7 +49,7 @@ void SimulatorNode::onGoal() {
   goal_ = GoalProgress();
   goal_.end = goal->first_episode + goal->episodes;
   try {
-    if (goal->episodes == 0) throw core::Error("episodes is 0; ask for at least 1");
+    if (goal->episodes == 0) throw core::Error("episodes is 0; it must be at least 1");
     begin(Driver::kGoal, firstEpisode(*goal));
   } catch (const core::Error& error) {
     stop();
@@ -60,7 +60,7 @@ void SimulatorNode::onGoal() {
 
 void SimulatorNode::onPreempt() {
   stop();
-  goal_server_.setPreempted(RunEpisodesResult(), "another goal, or a cancellation, came in between");
+  goal_server_.setPreempted(RunEpisodesResult(), "replaced by another goal or cancelled");
 }
 
 void SimulatorNode::begin(Driver driver, const sim::EpisodeKey& key) {
@@ -170,12 +170,13 @@ bool SimulatorNode::onReset(Reset::Request& request, Reset::Response& response) 
 
 bool SimulatorNode::onSetRequest(SetRequest::Request& request, SetRequest::Response& response) {
   try {
-    if (driver_ == Driver::kGoal) throw core::Error("a RunEpisodes goal is being played; its requests are its own");
+    if (driver_ == Driver::kGoal)
+      throw core::Error("a RunEpisodes goal is being played; cancel it before you set a request");
     if (!play_) throw core::Error("no episode is being played; begin one with the service 'reset'");
     const core::Vocabulary& vocabulary = world_->objects.vocabulary();
     const core::Request wanted = vocabulary.request(request.items);
     play_->episode.setRequest(wanted);
-    response.message = "asking for " + itemList(vocabulary.names(play_->episode.state().request));
+    response.message = "requesting " + itemList(vocabulary.names(play_->episode.state().request));
     if (play_->episode.state().request.size() < wanted.size())
       response.message += "; the others are not on the counter";
     response.success = true;
@@ -192,8 +193,7 @@ void SimulatorNode::onIdleTimer() {
   if (!play_ && options_.free_run) return freeRun();
   if (!play_) return publisher_.publishJointStates();
   if (awaited_.isZero() || ::ros::WallTime::now() - published_ < ::ros::WallDuration(options_.republish_sec)) return;
-  ROS_WARN_THROTTLE(30, "no action has come for %.1f s: publishing %s again", options_.republish_sec,
-                    whatIsAwaited().c_str());
+  ROS_WARN_THROTTLE(30, "no action for %.1f s; publishing %s again", options_.republish_sec, whatIsAwaited().c_str());
   publisher_.publishAgain();
   published_ = ::ros::WallTime::now();
   health_.count("steps published again");

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kPolicyPollSec = 0.1;
 
-/// @throws core::Error naming an item that stands on counters of this world and that the policy would not know.
+/// @throws core::Error naming an item of this world's object set that the policy does not know.
 void checkVocabulary(const PolicyStatus& policy, const core::Vocabulary& vocabulary) {
   for (const std::string& item : vocabulary.names()) {
     if (std::find(policy.vocabulary.begin(), policy.vocabulary.end(), item) != policy.vocabulary.end()) continue;
-    throw core::Error("weights '" + policy.weights + "' don't know the item '" + item +
+    throw core::Error("weights '" + policy.weights + "' do not know the item '" + item +
                       "' of this world's object set; use the world that they were trained in");
   }
 }
@@ -25,11 +25,12 @@ void checkVocabulary(const PolicyStatus& policy, const core::Vocabulary& vocabul
 core::OptionSet EvaluatorNode::Options::options() {
   core::OptionSet set("evaluator");
   set.add("world", world, "world file; empty: the package's config/world.yaml");
-  set.add("task", task, "simple, medium, hard or a YAML file");
-  set.add("seed", seed, "which episodes; the default's are held out from all training");
-  set.add("episodes", episodes, 1, 1000000, "episodes", "that the scores are means of");
-  set.add("result", result, "JSON file for the scores; empty: only the terminal");
-  set.add("stall_timeout", stall_sec, 1, 3600, "s", "ask for episodes again when no step of them has come for so long");
+  set.add("task", task, "simple, medium, hard, or a task's YAML file");
+  set.add("seed", seed, "seed of the episodes; those of the default are held out from all training");
+  set.add("episodes", episodes, 1, 1000000, "episodes", "number of episodes");
+  set.add("result", result, "JSON file for the scores; empty: print them only");
+  set.add("stall_timeout", stall_sec, 1, 3600, "s",
+          "request episodes again if no step of them has arrived for this long");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -42,7 +43,7 @@ EvaluatorNode::EvaluatorNode(const Options& options)
         status.addf("episodes", "%zu of %d", evaluation_.outcomes.size(), options_.episodes);
       }),
       client_(node_, *world_, options.stall_sec, health_),
-      evaluation_("", sim::loadTask(options.task).name, options.seed) {  // the policy's name comes with its status
+      evaluation_("", sim::loadTask(options.task).name, options.seed) {  // the policy's name is in its status message
   start_timer_ = node_.createWallTimer(::ros::WallDuration(kPolicyPollSec),
                                        [this](const ::ros::WallTimerEvent&) { startWhenPolicyIsThere(); });
 }
@@ -57,8 +58,8 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   checkVocabulary(*policy, world_->objects.vocabulary());
   if (policy->mode != "argmax" && policy->seed != options_.seed) {
     throw core::Error("seed: the policy draws its actions (" + policy->mode + ") with seed " +
-                      std::to_string(policy->seed) + ", the episodes are those of " + std::to_string(options_.seed) +
-                      "; give both nodes the same ~seed, or let the policy act by argmax");
+                      std::to_string(policy->seed) + ", but the episodes have seed " + std::to_string(options_.seed) +
+                      "; give both nodes the same ~seed, or set the policy's ~mode to argmax");
   }
   evaluation_.policy = policy->weights;
   RolloutPlan plan;

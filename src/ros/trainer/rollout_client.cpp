@@ -9,10 +9,10 @@ namespace early_fusion::nodes {
 
 namespace {
 
-constexpr int kStepQueue = 512;  // some ten episodes: the simulator waits for the policy alone
+constexpr int kStepQueue = 512;  // about ten episodes: the simulator does not wait for this subscriber
 constexpr double kSupervisionSec = 0.1;
-constexpr double kPatienceSec = 2.0;   // before it is logged what is being waited for
-constexpr double kStragglerSec = 1.0;  // after a goal's end, how long its last messages may take
+constexpr double kPatienceSec = 2.0;   // before the log says what the client waits for
+constexpr double kStragglerSec = 1.0;  // maximum delay of a goal's last messages after its end
 
 }  // namespace
 
@@ -130,7 +130,7 @@ void RolloutClient::onGoalDone(const actionlib::SimpleClientGoalState& state) {
   if (state == actionlib::SimpleClientGoalState::ABORTED || state == actionlib::SimpleClientGoalState::REJECTED) {
     throw core::Error("the simulator cannot play task '" + plan_.goal.task + "': " + state.getText());
   }
-  // A preempted goal is sent again, but only after the stall: the goal that replaced it may be played meanwhile.
+  // A preempted goal is sent again only after the stall timeout, because the goal that replaced it may be played first.
   goal_done_ = state != actionlib::SimpleClientGoalState::PREEMPTED;
   last_news_ = ::ros::WallTime::now();
   finishWhenDone();
@@ -139,7 +139,7 @@ void RolloutClient::onGoalDone(const actionlib::SimpleClientGoalState& state) {
 void RolloutClient::finishWhenDone() {
   if (phase_ != Phase::kPlaying || !goal_done_ || !recorder_->complete()) return;
   phase_ = Phase::kIdle;
-  const std::function<void()> on_done = std::move(on_done_);  // it may start the next plan, with an on_done_ of its own
+  const std::function<void()> on_done = std::move(on_done_);  // it may start the next plan, which sets on_done_
   on_done();
 }
 
@@ -153,7 +153,7 @@ void RolloutClient::supervise() {
     goal_done_ = true;
     return finishWhenDone();
   }
-  ROS_WARN("no word of %s for %.1f s: asking for them again", waitsFor().c_str(), quiet.toSec());
+  ROS_WARN("no step of %s for %.1f s; requesting them again", waitsFor().c_str(), quiet.toSec());
   health_.count("goals sent again");
   phase_ = Phase::kWaiting;
   askWhenReady();

@@ -60,12 +60,12 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
   const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, core::kStackedFrames);
   if (action.frames != frames) {
     throw core::Error(stepName(scene) + ": was decided from " + std::to_string(action.frames) + " images, not " +
-                      std::to_string(frames) + ": the policy has not seen the episode from its beginning");
+                      std::to_string(frames) + "; the policy has not seen the episode from its beginning");
   }
   const SceneState now = sceneState(scene, world_.objects.vocabulary(), world_.rig.lattice());
   if (scene.steps != static_cast<std::uint32_t>(first_.task.steps) || request.items != scene.request ||
       scene.previous_action != recording_->previous_action || !sameState(now.state, recording_->episode.state())) {
-    throw core::Error(stepName(scene) + ": does not follow from the step before it (step " +
+    throw core::Error(stepName(scene) + ": does not follow from the previous step (step " +
                       std::to_string(recording_->episode.state().step - 1) + " was recorded last)");
   }
 }

@@ -9,7 +9,7 @@ namespace early_fusion::nodes {
 
 core::OptionSet SessionMonitorNode::Options::options() {
   core::OptionSet set("session_monitor");
-  set.add("period", period_sec, 0.05, 60, "s", "between two looks at whether a node has failed");
+  set.add("period", period_sec, 0.05, 60, "s", "time between two checks of 'session_failure'");
   return set;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRoundPollSec = 0.01;
 
-/// Thrown through a round of training to end it.
+/// Thrown to cancel a round.
 struct Stopped {};
 
 }  // namespace
@@ -20,10 +20,12 @@ struct Stopped {};
 core::OptionSet TrainerNode::Options::options() {
   core::OptionSet set("trainer");
   set.include(session.options());
-  set.add("workers", workers, 1, 64, "",
-          "pairs of simulator and policy that share the episodes: in this namespace, worker_2, worker_3, ...");
-  set.add("stall_timeout", stall_sec, 1, 3600, "s", "ask for episodes again when no step of them has come for so long");
-  set.add("progress_period", progress_period_sec, 0.1, 3600, "s", "between two messages on 'progress'");
+  set.add(
+      "workers", workers, 1, 64, "",
+      "number of workers (pairs of a simulator and a policy): in this namespace, in worker_2, in worker_3 and so on");
+  set.add("stall_timeout", stall_sec, 1, 3600, "s",
+          "request episodes again if no step of them has arrived for this long");
+  set.add("progress_period", progress_period_sec, 0.1, 3600, "s", "time between two messages on 'progress'");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -35,7 +37,7 @@ TrainerNode::TrainerNode(const Options& options, std::unique_ptr<learning::Train
       progress_publisher_(node_.advertise<Progress>(kProgressTopic, 4, true)) {
   const learning::SessionOptions& settings = session_->options();
   ROS_INFO("%s %s (%ld parameters) on task %s, preset %s, seed %lu, in %s",
-           session_->resumed() ? "going on with" : "training", settings.policy.kind.c_str(),
+           session_->resumed() ? "resuming" : "training", settings.policy.kind.c_str(),
            static_cast<long>(session_->trainer().policy().parameters().values().size()), settings.task.c_str(),
            settings.preset.c_str(), static_cast<unsigned long>(settings.seed), settings.output.c_str());
   progress_timer_ = node_.createWallTimer(::ros::WallDuration(options.progress_period_sec),
@@ -105,7 +107,7 @@ void TrainerNode::train() {
 void TrainerNode::onRoundTimer() {
   if (!round_.valid() || round_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   round_timer_.stop();
-  round_.get();  // throws what the round threw: a full disk, say
+  round_.get();  // rethrows the round's exception, such as a full disk
   progress_ = session_->progress();
   ROS_INFO("%s", progress_.line().c_str());
   goOn();

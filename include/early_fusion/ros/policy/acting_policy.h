@@ -17,7 +17,7 @@ namespace early_fusion::nodes {
 struct Acting {
   std::string mode = "argmax";     ///< one of model::actionChoiceNames()
   std::uint64_t seed = 0;          ///< of drawn actions
-  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 where the processor computes faster in it
+  std::string precision = "auto";  ///< f32, bf16, or auto: bf16 if the processor computes faster in it
 };
 
 /// The decision on one image.
@@ -47,7 +47,7 @@ class ActingPolicy {
 
   /// Decides on the next frame of an episode. Earlier frames are used if they belong to the same episode and the steps
   /// are consecutive. A repeated step replaces its frame.
-  /// @param frame (imageSize(), imageSize()). @param items what is requested.
+  /// @param frame (imageSize(), imageSize()). @param items the names of the requested items.
   /// @throws core::Error naming an item that the weights don't know, and the known ones.
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);

@@ -20,8 +20,8 @@
 
 namespace early_fusion::nodes {
 
-/// Answers every image that has a request with the same stamp with an action. It knows nothing of the simulator, so any
-/// camera can replace it.
+/// Publishes an action for every image that has a request with the same stamp. It does not depend on the simulator, so
+/// any camera can replace it.
 class PolicyNode {
  public:
   struct Options {
@@ -36,7 +36,7 @@ class PolicyNode {
     core::OptionSet options();
   };
 
-  /// @throws core::Error when the weights file cannot be used.
+  /// @throws core::Error if the weights file cannot be used.
   explicit PolicyNode(const Options& options);
 
  private:

@@ -14,8 +14,8 @@
 
 namespace early_fusion::nodes {
 
-/// Takes the simulator's place before a real camera: publishes the current request with an image's stamp, waits for the
-/// action, and takes the next image once the camera has had time to move.
+/// Replaces the simulator if the camera is real. It publishes the current request with an image's stamp, waits for the
+/// action, and takes the next image when the camera has had time to move.
 ///
 /// So the policy sees one image for each of its actions, as in the simulator.
 class RequestNode {

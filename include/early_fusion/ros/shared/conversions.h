@@ -17,7 +17,7 @@
 
 namespace early_fusion::nodes {
 
-/// The first of a goal's episodes. @throws core::Error as sim::loadTask() and sim::withUpTo().
+/// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
 /// An rgb8 message without row padding. Moves the pixels.
@@ -45,7 +45,7 @@ struct SceneState {
   sim::EpisodeState state;
 };
 
-/// @throws core::Error naming the field, the value and what is allowed.
+/// @throws core::Error naming the field, the value and the allowed values.
 SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary, const world::OrientationLattice& lattice);
 
 /// "mug, bowl", or "nothing".

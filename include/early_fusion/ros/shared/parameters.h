@@ -11,7 +11,7 @@ namespace early_fusion::nodes {
 /// @throws core::Error naming a parameter that is a list, or an option that is a group.
 core::GivenOptions privateParameters(const core::OptionSet& options);
 
-/// Sets the options from what privateParameters() gave.
+/// Sets the options from the result of privateParameters().
 /// @throws core::Error naming the parameter, its value and the allowed range; for an unknown one, the known ones.
 void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters);
 

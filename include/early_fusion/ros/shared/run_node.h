@@ -8,11 +8,11 @@
 
 namespace early_fusion::nodes {
 
-/// The one place where a node is initialised and what it throws is caught.
+/// Initialises a node, runs it and catches its exceptions. No other place does this.
 ///
-/// --help prints the options as parameters. An exception is logged as ROS_FATAL and, where a launch file has set the
-/// parameter `session_failure` (see SessionMonitorNode), noted there, so that a session of respawned nodes ends instead
-/// of respawning for ever a node that cannot run.
+/// --help prints the options as parameters. An exception is logged as ROS_FATAL. If a launch file has set the parameter
+/// `session_failure` (see SessionMonitorNode), the reason is written there, so that the session ends and roslaunch does
+/// not respawn a node that cannot run.
 /// @param run reads the parameters, constructs the node and spins.
 /// @return the process's exit code.
 int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,

@@ -6,8 +6,8 @@
 /// namespace early_fusion for roscpp's.
 namespace early_fusion::nodes {
 
-// Of the simulator, or of a real camera. One stamp a step.
-inline constexpr char kImageTopic[] = "camera/image_raw";  ///< camera_info beside it
+// Of the simulator or of a real camera, with one stamp for each step.
+inline constexpr char kImageTopic[] = "camera/image_raw";  ///< camera_info is in the same namespace
 inline constexpr char kCameraInfoTopic[] = "camera/camera_info";
 inline constexpr char kRequestTopic[] = "request";
 inline constexpr char kSceneTopic[] = "scene";

@@ -18,18 +18,19 @@
 
 namespace early_fusion::nodes {
 
-/// The simulated pan-tilt camera: publishes a step, waits for the action that answers it, carries it out, and so on.
+/// The simulated pan-tilt camera. It publishes a step, waits for the action, carries it out and publishes the next
+/// step.
 ///
-/// Plays what a RunEpisodes goal asks for, or one episode that `reset` begins, or, with free_run, episode after
-/// episode. An episode is a function of its sim::EpisodeKey and the actions alone.
+/// It plays the episodes of a RunEpisodes goal, or one episode that `reset` begins, or, with free_run, episode after
+/// episode. An episode is a function of its sim::EpisodeKey and the actions only.
 class SimulatorNode {
  public:
   struct Options {
     std::string world;            ///< a world file; empty: config/world.yaml of the package
-    std::string task = "simple";  ///< of free_run, and of `reset` without a task
-    std::uint64_t seed = 1;       ///< of free_run
+    std::string task = "simple";  ///< for free_run, and for `reset` without a task
+    std::uint64_t seed = 1;       ///< for free_run
     bool free_run = false;
-    double rate_hz = 0;  ///< 0: as fast as actions come
+    double rate_hz = 0;  ///< 0: no limit
     double republish_sec = 1;
     double marker_rate_hz = 5;
     double diagnostic_period_sec = 1;

@@ -19,17 +19,17 @@ namespace early_fusion::nodes {
 
 /// Which episodes to record, and how they must be played to count.
 struct RolloutPlan {
-  RunEpisodesGoal goal;         ///< the episodes, as the simulator is asked for them
+  RunEpisodesGoal goal;         ///< the episodes, as in the simulator's goal
   std::string weights;          ///< the id of the weights that must act
-  std::string mode = "argmax";  ///< how they must choose
+  std::string mode = "argmax";  ///< how they must choose actions
   learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
 };
 
 /// Makes labelled trajectories of the messages of episodes that other nodes play.
 ///
-/// An episode is accepted only if every step arrived, if each step follows from the one before by the rules, and if the
-/// right weights acted and had seen the episode from its beginning. So a node that died within an episode cannot change
-/// what is learnt: the episode is dropped and stays missing().
+/// An episode is accepted only if every step arrived, if each step follows from the previous one by the rules, and if
+/// the right weights acted and had seen the episode from its beginning. So a node that dies within an episode does not
+/// change the training data: the episode is dropped and stays missing().
 class RolloutRecorder {
  public:
   /// `world` must outlive the recorder. @throws core::Error as firstEpisode().

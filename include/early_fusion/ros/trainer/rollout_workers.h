@@ -14,14 +14,14 @@
 
 namespace early_fusion::nodes {
 
-/// Workers, which are pairs of a simulator and a policy, that share the episodes of a plan. A worker runs in lockstep
-/// and keeps one core busy.
+/// The workers of a session, which share the episodes of a plan. A worker is a pair of a simulator and a policy. It
+/// runs in lockstep and keeps one core busy.
 ///
 /// The first worker's topics are in the node's namespace, those of the others in worker_2, worker_3, ... below it. The
 /// trajectories are the same for any number of workers.
 class RolloutWorkers {
  public:
-  /// @param count of workers, at least 1. `world` and `health` must outlive the object.
+  /// @param count the number of workers, at least 1. `world` and `health` must outlive the object.
   RolloutWorkers(int count, const world::World& world, double stall_sec, Health& health);
 
   /// Publishes the weights to every worker (latched).

@@ -12,7 +12,7 @@ namespace early_fusion::nodes {
 /// @throws core::Error naming the parameter or the preset's key, its value and the allowed range.
 TrainerNode::Options loadTrainerOptions();
 
-/// Starts the session. A trainer that is respawned in the same launch goes on with it, whatever options.resume says.
+/// Starts the session. A trainer that is respawned in the same launch continues it, also without options.resume.
 /// @throws core::Error as learning::TrainingSession and world::loadWorld().
 std::unique_ptr<learning::TrainingSession> startSession(learning::SessionOptions options);
 

@@ -30,7 +30,7 @@ class TrainerNode {
     core::OptionSet options();
   };
 
-  /// @param session to bring to its end; started with options.session, see startSession().
+  /// @param session the session to run to its end. It was started with options.session; see startSession().
   TrainerNode(const Options& options, std::unique_ptr<learning::TrainingSession> session);
 
   /// Cancels the current round. A resumed session rolls out its trajectories again.
@@ -46,7 +46,7 @@ class TrainerNode {
 
   void publishWeights(const std::string& mode, std::uint64_t seed);
   /// Publishes the current weights and has the plan's episodes played with them.
-  /// @param plan without task, weights and training expert, which are the session's.
+  /// @param plan without task, weights and training expert. These are set from the session.
   void play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory, std::function<void()> on_done);
   void enterStage(const std::string& stage);
   /// The finished share of the current stage. [0, 1]
