@@ -28,7 +28,7 @@ class GoalPolicy {
   virtual void predict(const std::vector<Observation>& observations, Probabilities& probabilities) = 0;
 
   /// How much the policy attends to each region of the newest frame, (rows, columns), row 0 on top; none where the kind
-  /// has no attention.
+  /// has no attention. Negative where the region counts with the opposite sign.
   virtual std::optional<Eigen::MatrixXf> attention(const Observation& /*observation*/) { return std::nullopt; }
 };
 
