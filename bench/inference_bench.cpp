@@ -1,19 +1,19 @@
-// Inference of one observation against libtorch's, in alternation: inference_bench [rounds] [channels...]
+// Inference of one observation against libtorch's, in alternation: inference_bench --help
 #include "network_bench.h"
 
 namespace early_fusion::bench {
 namespace {
 
-std::function<void()> ourPrediction(int channels, const std::string& precision, const model::TestBatch& batch) {
-  std::shared_ptr<model::GoalPolicy> policy =
-      model::makePolicy(policyOptions(channels, precision), model::testVocabulary(kItems), 1);
+std::function<void()> ourPrediction(const model::PolicyOptions& options, const model::TestBatch& batch) {
+  std::shared_ptr<model::GoalPolicy> policy = model::makePolicy(options, model::testVocabulary(kItems), 1);
   const std::vector<model::Observation> observations = batch.observations();
   auto probabilities = std::make_shared<model::Probabilities>();
   return [policy, observations, probabilities] { policy->predict(observations, *probabilities); };
 }
 
-std::function<void()> torchPrediction(int channels, torch::MemoryFormat format, const model::TorchBatch& batch) {
-  const auto network = torchNetwork(channels, format);
+std::function<void()> torchPrediction(const model::PolicyOptions& options, torch::MemoryFormat format,
+                                      const model::TorchBatch& batch) {
+  const auto network = torchNetwork(options, format);
   network->eval();
   const torch::Tensor images = batch.images.contiguous(format);
   return [network, images, &batch] {
@@ -28,16 +28,20 @@ std::function<void()> torchPrediction(int channels, torch::MemoryFormat format, 
 int main(int argc, char** argv) {
   using namespace early_fusion;
   using namespace early_fusion::bench;
+  BenchOptions options;
+  options.rounds = 101;
+  CLI::App app("Inference of one observation against libtorch's.");
+  addOptions(app, options);
+  CLI11_PARSE(app, argc, argv);
+
   const model::TestBatch batch(1, kImageSize, kItems, 1);
   const model::TorchBatch torch_batch(batch.samples, kImageSize, kItems);
-  Comparison comparison{1, 1, {}, {}};
-  comparison.ours = [&](int channels, const std::string& precision) {
-    return ourPrediction(channels, precision, batch);
-  };
-  comparison.torch = [&](int channels, torch::MemoryFormat format) {
-    return torchPrediction(channels, format, torch_batch);
+  Comparison comparison{1, 1, 1, {}, {}};
+  comparison.ours = [&](const model::PolicyOptions& policy) { return ourPrediction(policy, batch); };
+  comparison.torch = [&](const model::PolicyOptions& policy, torch::MemoryFormat format) {
+    return torchPrediction(policy, format, torch_batch);
   };
   std::printf("inference of one observation, ");
-  printTable(comparison, argc > 1 ? std::max(1, std::atoi(argv[1])) : 101, channelsFromArguments(argc, argv));
+  printTable(comparison, options);
   std::printf("Winograd's algorithm (f32, 64 channels or more) needs fewer operations than the floor counts.\n");
 }

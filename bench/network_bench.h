@@ -2,6 +2,8 @@
 
 #include <omp.h>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,11 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/names.h"
 #include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/nn/aligned_buffer.h"
 #include "early_fusion/nn/convolution.h"
 #include "policy_batches.h"
-#include "torch_early_fusion.h"
+#include "torch_network.h"
 
 namespace early_fusion::bench {
 
@@ -83,102 +86,121 @@ struct PeakConvolution {
   nn::AlignedBuffer<T> in, out;
 };
 
-/// The number of operations of one image's convolutions. The tiled goal's are left out, because it is a bias.
-/// @param passes 1 for inference, 3 for training. The first block has one pass less in training, because it needs no
-/// gradient of its input.
-inline double networkOperations(int channels, int passes) {
-  double total = 0;
-  for (int block = 0; block < 4; ++block) {
-    const double pixels = double(kImageSize >> block) * (kImageSize >> block);
-    const int in = block == 0 ? 9 : channels;
-    total += 2.0 * 9 * in * channels * pixels * (block == 0 ? std::min(passes, 2) : passes);
-  }
-  return total;
+/// What to measure.
+struct BenchOptions {
+  std::vector<std::string> kinds = {"early_fusion"};
+  std::vector<int> channels = {16, 32, 64, 128};
+  int requests = 1;  ///< of each frame
+  int rounds = 0;    ///< that the medians are of
+};
+
+inline void addOptions(CLI::App& app, BenchOptions& options) {
+  app.add_option("--kinds", options.kinds, "of networks: " + core::joined(model::policyKindNames()));
+  app.add_option("--channels", options.channels, "of the networks");
+  app.add_option("--rounds", options.rounds, "that the medians are of")->check(CLI::PositiveNumber);
 }
 
-inline model::PolicyOptions policyOptions(int channels, const std::string& precision) {
+inline model::PolicyOptions policyOptions(const std::string& kind, int channels, const std::string& precision) {
   model::PolicyOptions options;
+  options.kind = kind;
   options.channels = channels;
   options.image_size = kImageSize;
   options.precision = precision;
   return options;
 }
 
-/// The network with its convolutions' weights in the layout of the images.
-inline std::shared_ptr<model::TorchEarlyFusion> torchNetwork(int channels, torch::MemoryFormat format) {
-  auto network = std::make_shared<model::TorchEarlyFusion>(policyOptions(channels, "f32"), kItems);
+/// Operations that the convolutions of one frame need, those of the tiled goal left out: it is a bias.
+/// @param requests of the frame: the blocks that a goal reaches are computed for each.
+/// @param passes 1 for inference; 3 in training, of which the first block's input gradient is not needed.
+inline double networkOperations(const model::PolicyOptions& options, int requests, int passes) {
+  const std::vector<std::string>& read = model::policyKind(options.kind).options;
+  const bool fuses = std::count(read.begin(), read.end(), "fusion_block") > 0;
+  const auto policy = model::makePolicy(options, model::testVocabulary(kItems), 1);
+  const int image_channels = policy->options().spatial_grid == "true" ? 11 : 9;
+  double total = 0;
+  for (int block = 0; block < 4; ++block) {
+    const double pixels = double(kImageSize >> block) * (kImageSize >> block);
+    const int in = block == 0 ? image_channels : options.channels;
+    const int times = fuses && block > options.fusion_block ? requests : 1;
+    total += 2.0 * 9 * in * options.channels * pixels * times * (block == 0 ? std::min(passes, 2) : passes);
+  }
+  return total;
+}
+
+/// With its convolutions' weights in the layout of the images.
+inline std::shared_ptr<model::TorchNetwork> torchNetwork(const model::PolicyOptions& options,
+                                                         torch::MemoryFormat format) {
+  auto network = std::make_shared<model::TorchNetwork>(options, kItems);
   for (torch::Tensor& parameter : network->parameters()) {
     if (parameter.dim() == 4) parameter.set_data(parameter.data().contiguous(format));
   }
   return network;
 }
 
-inline std::vector<int> channelsFromArguments(int argc, char** argv) {
-  std::vector<int> channels;
-  for (int i = 2; i < argc; ++i) channels.push_back(std::atoi(argv[i]));
-  return channels.empty() ? std::vector<int>{16, 32, 64, 128} : channels;
-}
-
-/// The same work for this package's network and for libtorch's. The conversion of the images to floats is not counted
-/// in libtorch's time, which favours libtorch.
+/// The same work by our network and by libtorch's. The images are floats before libtorch's clock starts: a head start.
 struct Comparison {
-  int images;  ///< number of images in one run of the work
-  int passes;  ///< see networkOperations()
-  std::function<std::function<void()>(int channels, const std::string& precision)> ours;
-  std::function<std::function<void()>(int channels, torch::MemoryFormat format)> torch;
+  int frames;    ///< that one run of the work takes
+  int requests;  ///< of each
+  int passes;    ///< see networkOperations()
+  std::function<std::function<void()>(const model::PolicyOptions&)> ours;
+  std::function<std::function<void()>(const model::PolicyOptions&, torch::MemoryFormat)> torch;
 };
 
 /// The row of one precision. It is measured in alternation with the other rows.
 template <class T>
 class Contestant {
  public:
-  Contestant(const Comparison& comparison, int channels, const char* precision)
+  Contestant(const Comparison& comparison, const model::PolicyOptions& options)
       : comparison_(comparison),
-        channels_(channels),
-        precision_(precision),
-        ours_(comparison.ours(channels, precision)),
+        options_(options),
+        ours_(comparison.ours(options)),
         peak_([this] { convolution_(); }) {}
 
   void enter(std::vector<Timing*>& timings) { timings.insert(timings.end(), {&ours_, &peak_}); }
 
   void print(double torch_ms) const {
-    const double ours_ms = ours_.median() / comparison_.images;
+    const double ours_ms = ours_.median() / comparison_.frames;
     const double peak = convolution_.operations() / (peak_.median() * 1e-3);  // operations a second
-    const double floor_ms = networkOperations(channels_, comparison_.passes) / peak * 1e3;
-    std::printf("%8d  %-9s %9.3f %9.3f %7.3f %9.0f %9.3f %8.2f\n", channels_, precision_, ours_ms, torch_ms,
-                ours_ms / torch_ms, peak / 1e9, floor_ms, floor_ms / ours_ms);
+    const double floor_ms = networkOperations(options_, comparison_.requests, comparison_.passes) / peak * 1e3;
+    std::printf("%-22s %8d  %-9s %9.3f %9.3f %7.3f %9.0f %9.3f %8.2f\n", options_.kind.c_str(), options_.channels,
+                options_.precision.c_str(), ours_ms, torch_ms, ours_ms / torch_ms, peak / 1e9, floor_ms,
+                floor_ms / ours_ms);
   }
 
  private:
   const Comparison& comparison_;
-  int channels_;
-  const char* precision_;
+  model::PolicyOptions options_;
   Timing ours_;
   PeakConvolution<T> convolution_;
   Timing peak_;
 };
 
-/// The table of the comparison, with a row for each number of channels and precision. The rows of one number of
-/// channels are measured in alternation.
-inline void printTable(const Comparison& comparison, int rounds, const std::vector<int>& all_channels) {
-  std::printf("%d threads, medians of %d; ms an image\n", omp_get_max_threads(), rounds);
-  std::printf("channels  precision      ours  libtorch   ratio  GFLOP/s*     floor    share\n");
-  for (int channels : all_channels) {
-    Timing torch_default(comparison.torch(channels, torch::MemoryFormat::Contiguous));
-    Timing torch_last(comparison.torch(channels, torch::MemoryFormat::ChannelsLast));
-    Contestant<float> single(comparison, channels, "f32");
-    std::unique_ptr<Contestant<nn::bfloat16>> half;
-    if (nn::processorHasBfloat16()) {
-      half = std::make_unique<Contestant<nn::bfloat16>>(comparison, channels, "bf16");
-    }
-    std::vector<Timing*> timings = {&torch_default, &torch_last};
-    single.enter(timings);
-    if (half) half->enter(timings);
-    alternate(timings, rounds);
-    const double torch_ms = std::min(torch_default.median(), torch_last.median()) / comparison.images;
-    single.print(torch_ms);
-    if (half) half->print(torch_ms);
-    std::fflush(stdout);
+/// A row for each precision of a network, all in alternation.
+inline void printNetwork(const Comparison& comparison, const std::string& kind, int channels, int rounds) {
+  const model::PolicyOptions f32 = policyOptions(kind, channels, "f32");
+  Timing torch_default(comparison.torch(f32, torch::MemoryFormat::Contiguous));
+  Timing torch_last(comparison.torch(f32, torch::MemoryFormat::ChannelsLast));
+  Contestant<float> single(comparison, f32);
+  std::unique_ptr<Contestant<nn::bfloat16>> half;
+  if (nn::processorHasBfloat16()) {
+    half = std::make_unique<Contestant<nn::bfloat16>>(comparison, policyOptions(kind, channels, "bf16"));
+  }
+  std::vector<Timing*> timings = {&torch_default, &torch_last};
+  single.enter(timings);
+  if (half) half->enter(timings);
+  alternate(timings, rounds);
+  const double torch_ms = std::min(torch_default.median(), torch_last.median()) / comparison.frames;
+  single.print(torch_ms);
+  if (half) half->print(torch_ms);
+  std::fflush(stdout);
+}
+
+inline void printTable(const Comparison& comparison, const BenchOptions& options) {
+  std::printf("%d threads, medians of %d; ms a frame, requests a frame: %d\n", omp_get_max_threads(), options.rounds,
+              comparison.requests);
+  std::printf("%-22s channels  precision      ours  libtorch   ratio  GFLOP/s*     floor    share\n", "kind");
+  for (const std::string& kind : options.kinds) {
+    for (int channels : options.channels) printNetwork(comparison, kind, channels, options.rounds);
   }
   std::printf(
       "libtorch: f32, the faster of its default and channels-last layouts. *: oneDNN's fastest convolution, measured "

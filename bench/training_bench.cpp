@@ -1,29 +1,30 @@
-// A training step (forward, backward, Adam; batch 32) against libtorch's, in alternation: training_bench [rounds]
-// [channels...]
+// A training step (forward, backward, Adam; 32 samples) against libtorch's, in alternation: training_bench --help
 #include "early_fusion/nn/adam.h"
 #include "network_bench.h"
 
 namespace early_fusion::bench {
 namespace {
 
-constexpr int kBatch = 32;
+constexpr int kSamples = 32;
 
-std::function<void()> ourStep(int channels, const std::string& precision, const model::TestBatch& batch) {
-  std::shared_ptr<model::TrainablePolicy> policy =
-      model::makePolicy(policyOptions(channels, precision), model::testVocabulary(kItems), 1);
+using Samples = std::vector<model::Sample>;
+
+std::function<void()> ourStep(const model::PolicyOptions& options, const Samples& samples) {
+  std::shared_ptr<model::TrainablePolicy> policy = model::makePolicy(options, model::testVocabulary(kItems), 1);
   auto adam = std::make_shared<nn::Adam>(policy->parameters().values().size(), nn::AdamOptions{});
-  return [policy, adam, &batch] {
-    policy->lossAndGradients(batch.samples, 1);
+  return [policy, adam, &samples] {
+    policy->lossAndGradients(samples, 1);
     adam->step(policy->parameters().values(), policy->parameters().gradients(), 1e-4);
     policy->parametersChanged();
   };
 }
 
-std::function<void()> torchStep(int channels, torch::MemoryFormat format, const model::TorchBatch& batch) {
-  const auto network = torchNetwork(channels, format);
+std::function<void()> torchStep(const model::PolicyOptions& options, torch::MemoryFormat format, int requests,
+                                const model::TorchBatch& batch) {
+  const auto network = torchNetwork(options, format);
   network->train();
   auto adam = std::make_shared<torch::optim::Adam>(network->parameters(), torch::optim::AdamOptions(1e-4));
-  const torch::Tensor images = batch.images.contiguous(format);
+  const torch::Tensor images = batch.images.slice(0, 0, batch.images.size(0), requests).contiguous(format);
   return [network, adam, images, &batch] {
     adam->zero_grad();
     batch.loss(network->forward(images, batch.counts)).backward();
@@ -37,11 +38,22 @@ std::function<void()> torchStep(int channels, torch::MemoryFormat format, const 
 int main(int argc, char** argv) {
   using namespace early_fusion;
   using namespace early_fusion::bench;
-  const model::TestBatch batch(kBatch, kImageSize, kItems, 1);
-  const model::TorchBatch torch_batch(batch.samples, kImageSize, kItems);
-  Comparison comparison{kBatch, 3, {}, {}};
-  comparison.ours = [&](int channels, const std::string& precision) { return ourStep(channels, precision, batch); };
-  comparison.torch = [&](int channels, torch::MemoryFormat format) { return torchStep(channels, format, torch_batch); };
-  std::printf("training, batch %d, ", kBatch);
-  printTable(comparison, argc > 1 ? std::max(1, std::atoi(argv[1])) : 9, channelsFromArguments(argc, argv));
+  BenchOptions options;
+  options.rounds = 9;
+  CLI::App app("A training step of 32 samples against libtorch's.");
+  addOptions(app, options);
+  app.add_option("--requests", options.requests, "of each frame")->check(CLI::IsMember({1, 2, 4, 8}));
+  CLI11_PARSE(app, argc, argv);
+
+  const int frames = kSamples / options.requests;
+  const model::TestBatch batch(frames, kImageSize, kItems, 1);
+  const Samples samples = model::withRequests(batch, options.requests);
+  const model::TorchBatch torch_batch(samples, kImageSize, kItems);
+  Comparison comparison{frames, options.requests, 3, {}, {}};
+  comparison.ours = [&](const model::PolicyOptions& policy) { return ourStep(policy, samples); };
+  comparison.torch = [&](const model::PolicyOptions& policy, torch::MemoryFormat format) {
+    return torchStep(policy, format, options.requests, torch_batch);
+  };
+  std::printf("training, %d samples, ", kSamples);
+  printTable(comparison, options);
 }

@@ -3,6 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/model/annotation.h"
+#include "early_fusion/model/saliency.h"
 #include "early_fusion/render/rasterizer.h"
 
 namespace early_fusion::cli {
@@ -35,6 +36,7 @@ core::Image draw(render::Rasterizer& rasterizer, const world::World& world, cons
   rasterizer.render(world.rig.worldFromCamera(step.state.orientation), image);
   model::Annotation annotation;
   if (style.annotate) {
+    if (step.attention) model::tint(image, *step.attention);
     const double fov_rad = world.options.horizontal_fov_deg * kPi / 180;
     annotation.cone_radius_px = model::coneRadiusPx(sim::kConeHalfAngleRad, fov_rad, style.size);
     annotation.request = world.objects.vocabulary().names(step.state.request);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "early_fusion/core/action.h"
@@ -14,12 +16,13 @@ struct PlayedStep {
   sim::EpisodeState state;
   core::Action action;
   core::Action expert_action;
+  std::optional<Eigen::MatrixXf> attention;  ///< of the policy that acted, see model::GoalPolicy
 };
 
 struct ImageStyle {
   int size;       ///< edge of each drawn image [px]
   int scale;      ///< enlargement of each image
-  bool annotate;  ///< crosshair circle, request and action
+  bool annotate;  ///< attention map, crosshair circle, request and action
 };
 
 /// An image of each step.

@@ -41,7 +41,7 @@ core::OptionSet RenderOptions::options() {
   set.add("policy", policy, "agent that acts: expert, searching, random, idle, or a weights file");
   core::addImageSize(set, "size", size, "edge of a drawn image");
   set.add("scale", scale, 1, 16, "", "enlargement of each image");
-  set.add("annotate", annotate, "add the crosshair circle, the request and the action");
+  set.add("annotate", annotate, "add the crosshair circle, the request, the action and the policy's attention map");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
   set.add("out", out, "the PNG file to write; with --image steps, the folder for step_00.png, step_01.png and so on");
   return set;
@@ -72,9 +72,14 @@ std::vector<PlayedStep> play(const RenderOptions& options, const world::World& w
   std::vector<PlayedStep> played;
   learning::RolloutRunner runner(world, task, options.seed);
   runner.setObserver([&](std::uint64_t, const sim::Episode& before, const learning::TrajectoryStep& step) {
-    played.push_back({before.setup().instances, before.state(), step.action, step.label.action});
+    played.push_back({before.setup().instances, before.state(), step.action, step.label.action, std::nullopt});
   });
-  runner.run(options.episode, 1, *named.agent, false, [](const learning::Trajectory&) {});
+  const bool may_attend = options.annotate && named.policy != nullptr;
+  runner.run(options.episode, 1, *named.agent, may_attend, [&](const learning::Trajectory& trajectory) {
+    for (std::size_t i = 0; may_attend && i < played.size(); ++i) {
+      played[i].attention = named.policy->attention({trajectory.frameStack(i), &trajectory.steps[i].request});
+    }
+  });
   return played;
 }
 

@@ -5,7 +5,8 @@ namespace early_fusion::model {
 namespace {
 
 VisionTrunkShape trunkShape(const PolicyOptions& options) {
-  return {options.channels, options.image_size, TrunkFusion{options.fusion_block, options.channels}};
+  return {options.channels, options.image_size, TrunkFusion{options.fusion_block, options.channels},
+          options.usesSpatialGrid(false)};
 }
 
 }  // namespace

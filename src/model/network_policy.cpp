@@ -14,6 +14,7 @@ NetworkPolicy::NetworkPolicy(const PolicyOptions& options, const core::Vocabular
       head_(parameters_, {feature_count, options.channels, options.dropout}, threads_),
       batch_(vocabulary.size()),
       thread_features_(threads_, feature_count) {
+  options_.spatial_grid = trunk_shape.spatial_grid ? "true" : "false";  // what auto means may change; a file must not
   core::Random random(seed, {core::kInitialisation});
   trunk_->initialise(random);
   encoder_.initialise(random);
@@ -36,36 +37,48 @@ void NetworkPolicy::refreshInference() {
   statistics_stale_ = false;
 }
 
+void NetworkPolicy::reservePrediction(int rows) {
+  reserveRows(predict_counts_, rows, vocabulary_.size());
+  reserveRows(predict_goals_, rows, options_.channels);
+}
+
+void NetworkPolicy::predictFeatures(int row, const Observation& observation, int thread, float* features) {
+  float* goal = predict_goals_.row(row).data();
+  encoder_.predict(predict_counts_.row(row).data(), goal);
+  predictRow(thread, observation.frames, goal, features);
+}
+
+void NetworkPolicy::predictFeatures(const Observation& observation) {
+  reservePrediction(1);
+  countItems(observation, 0, vocabulary_.size(), predict_counts_.data());
+  refreshInference();
+  predictFeatures(0, observation, VisionTrunk::kAllThreads, thread_features_.data());
+}
+
 void NetworkPolicy::predict(const std::vector<Observation>& observations, Probabilities& probabilities) {
   const int rows = static_cast<int>(observations.size());
-  if (predict_counts_.rows() < rows) {
-    predict_counts_.resize(rows, vocabulary_.size());
-    predict_goals_.resize(rows, options_.channels);
-  }
-  for (int i = 0; i < rows; ++i) countItems(observations[i], i, vocabulary_.size(), predict_counts_.row(i).data());
   probabilities.resize(rows, core::kActionCount);
-  refreshInference();
-  const auto decide = [&](int i, int thread, float* features) {
-    float* goal = predict_goals_.row(i).data();
-    encoder_.predict(predict_counts_.row(i).data(), goal);
-    predictRow(thread, observations[i].frames, goal, features);
-    head_.predict(features, probabilities.row(i).data());
-  };
   if (rows == 1) {
-    decide(0, VisionTrunk::kAllThreads, thread_features_.data());
+    predictFeatures(observations[0]);
+    head_.predict(thread_features_.data(), probabilities.data());
     return;
   }
+  reservePrediction(rows);
+  for (int i = 0; i < rows; ++i) countItems(observations[i], i, vocabulary_.size(), predict_counts_.row(i).data());
+  refreshInference();
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
   for (int i = 0; i < rows; ++i) {
     const int thread = omp_get_thread_num();
-    decide(i, thread, thread_features_.row(thread).data());
+    float* features = thread_features_.row(thread).data();
+    predictFeatures(i, observations[i], thread, features);
+    head_.predict(features, probabilities.row(i).data());
   }
 }
 
 void NetworkPolicy::reserve(int rows) {
-  if (features_.rows() >= rows) return;
-  for (nn::Matrix* matrix : {&goals_, &dgoals_}) matrix->resize(rows, options_.channels);
-  for (nn::Matrix* matrix : {&features_, &dfeatures_}) matrix->resize(rows, thread_features_.cols());
+  for (nn::Matrix* matrix : {&goals_, &dgoals_}) reserveRows(*matrix, rows, options_.channels);
+  for (nn::Matrix* matrix : {&features_, &dfeatures_})
+    reserveRows(*matrix, rows, static_cast<int>(thread_features_.cols()));
 }
 
 double NetworkPolicy::lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) {

@@ -2,7 +2,9 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/model/attention_map.h"
 #include "early_fusion/model/early_fusion.h"
+#include "early_fusion/model/late_fusion.h"
 
 namespace early_fusion::model {
 
@@ -18,7 +20,10 @@ std::unique_ptr<TrainablePolicy> make(const PolicyOptions& options, const core::
 
 const std::vector<PolicyKind>& policyKinds() {
   static const std::vector<PolicyKind> kinds = {
-      {"early_fusion", {"channels", "fusion_block", "dropout", "image_size"}, make<EarlyFusion>},
+      {"early_fusion", {"channels", "fusion_block", "spatial_grid", "dropout", "image_size"}, make<EarlyFusion>},
+      {"late_fusion", {"channels", "spatial_grid", "dropout", "image_size"}, make<LateFusion>},
+      {"attention_map", {"channels", "spatial_grid", "dropout", "image_size"}, make<AttentionMap>},
+      {"softmax_attention_map", {"channels", "spatial_grid", "dropout", "image_size"}, make<SoftmaxAttentionMap>},
   };
   return kinds;
 }

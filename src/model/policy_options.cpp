@@ -19,6 +19,8 @@ core::OptionSet PolicyOptions::options() {
                   "width of every block, of the hidden layer and of the goal's embedding");
   set.add("fusion_block", fusion_block, 0, kBlocks - 1, "",
           "the goal joins the output of this block; 0: the frame stack itself");
+  set.addChoice("spatial_grid", spatial_grid, {"auto", "true", "false"},
+                "whether the network also sees each pixel's coordinates; auto: only the attention kinds");
   set.add("dropout", dropout, 0.0, 0.95, "", "share of the hidden units that are dropped in a training step");
   core::addImageSize(set, "image_size", image_size, "edge of the square frames that the policy sees");
   set.addChoice("precision", precision, precisionNames(),

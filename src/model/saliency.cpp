@@ -58,12 +58,14 @@ Eigen::MatrixXf occlusionSaliency(GoalPolicy& policy, const Observation& observa
   return saliency;
 }
 
-void tint(core::Image& image, const Eigen::MatrixXf& saliency) {
-  const float highest = saliency.maxCoeff();
+void tint(core::Image& image, const Eigen::MatrixXf& map) {
+  const float highest = map.maxCoeff();
   if (!(highest > 0)) return;
-  cv::Mat cells(static_cast<int>(saliency.rows()), static_cast<int>(saliency.cols()), CV_32F);
+  cv::Mat cells(static_cast<int>(map.rows()), static_cast<int>(map.cols()), CV_32F);
   for (int row = 0; row < cells.rows; ++row) {
-    for (int column = 0; column < cells.cols; ++column) cells.at<float>(row, column) = saliency(row, column) / highest;
+    for (int column = 0; column < cells.cols; ++column) {
+      cells.at<float>(row, column) = std::max(0.f, map(row, column)) / highest;
+    }
   }
   cv::Mat smooth;
   cv::resize(cells, smooth, {image.width, image.height}, 0, 0, cv::INTER_LINEAR);

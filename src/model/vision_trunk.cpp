@@ -21,6 +21,7 @@ class BlockTrunk : public VisionTrunk {
  public:
   BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape, int threads);
 
+  const VisionTrunkShape& shape() const override { return shape_; }
   void initialise(core::Random& random) override {
     for (nn::ConvBlock<T>& block : blocks_) block.initialise(random);
   }
@@ -46,7 +47,7 @@ class BlockTrunk : public VisionTrunk {
   };
 
   int pixels() const { return shape_.image_size * shape_.image_size; }
-  int positions() const { return shape_.mapEdge() * shape_.mapEdge(); }
+  int inputChannels() const { return nn::kImageChannels + (shape_.spatial_grid ? nn::kGridChannels : 0); }
 
   // Convolutions and pooled maps of a block. The maps of convolution c are [firstMap(c), firstMap(c + 1)).
   int convolutionCount(const FrameStackBatch& batch, int block) const {
@@ -63,7 +64,8 @@ class BlockTrunk : public VisionTrunk {
   void backwardBlock(int block, const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
   /// The layout of a block's input in predict(). `block` may be one past the last.
   nn::MapLayout predictionLayout(int block) const;
-  void stackOnAllThreads(const core::FrameStack& frames, T* x);
+  void stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) const;
+  void stackOnAllThreads(const core::FrameStack& frames, T* x) const;
   void writeMap(const T* channels_last, float* map) const;
 
   VisionTrunkShape shape_;
@@ -80,7 +82,7 @@ BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& sh
   const std::size_t pixels = this->pixels();
   for (int b = 0; b < kBlocks; ++b) {
     nn::ConvBlockShape block{};
-    block.image_channels = b == 0 ? nn::kImageChannels : shape.channels;
+    block.image_channels = b == 0 ? inputChannels() : shape.channels;
     block.goal_channels = b == fusion_block_ ? shape.fusion->goal_channels : 0;
     block.out_channels = shape.channels;
     block.size = shape.image_size >> b;
@@ -88,7 +90,7 @@ BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& sh
     blocks_.emplace_back(parameters, "block" + std::to_string(b + 1), block, b > 0, threads);
   }
   for (Scratch& scratch : scratch_) {
-    scratch.input.reserve(pixels * std::max(nn::kImageChannels, shape.channels / 4));
+    scratch.input.reserve(pixels * std::max(inputChannels(), shape.channels / 4));
     scratch.output.reserve(pixels / 4 * shape.channels);
     scratch.convolution.reserve(pixels * shape.channels);
   }
@@ -97,7 +99,7 @@ BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& sh
 template <class T>
 const T* BlockTrunk<T>::blockInput(const FrameStackBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    nn::stackFrames(batch.frame_stacks[convolution], 0, pixels(), scratch.input.data());
+    stack(batch.frame_stacks[convolution], 0, pixels(), scratch.input.data());
   } else {
     blocks_[block - 1].output(convolution, scratch.input.data());
   }
@@ -107,8 +109,8 @@ const T* BlockTrunk<T>::blockInput(const FrameStackBatch& batch, int block, int 
 template <class T>
 void BlockTrunk<T>::writeMap(const T* channels_last, float* map) const {
   for (int c = 0; c < shape_.channels; ++c) {
-    for (int p = 0; p < positions(); ++p) {
-      map[c * positions() + p] = nn::toFloat(channels_last[p * shape_.channels + c]);
+    for (int p = 0; p < shape_.regions(); ++p) {
+      map[c * shape_.regions() + p] = nn::toFloat(channels_last[p * shape_.channels + c]);
     }
   }
 }
@@ -141,8 +143,8 @@ void BlockTrunk<T>::backward(const FrameStackBatch& batch, const nn::Matrix& goa
   for (int i = 0; i < mapCount(batch); ++i) {
     T* gradient = blocks_.back().outputGradient(i);
     for (int c = 0; c < shape_.channels; ++c) {
-      for (int p = 0; p < positions(); ++p) {
-        gradient[p * shape_.channels + c] = nn::fromFloat<T>(dmaps(i, c * positions() + p));
+      for (int p = 0; p < shape_.regions(); ++p) {
+        gradient[p * shape_.channels + c] = nn::fromFloat<T>(dmaps(i, c * shape_.regions() + p));
       }
     }
     blocks_.back().sumOutputGradient(i);
@@ -179,10 +181,19 @@ nn::MapLayout BlockTrunk<T>::predictionLayout(int block) const {
 }
 
 template <class T>
-void BlockTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
+void BlockTrunk<T>::stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) const {
+  if (shape_.spatial_grid) {
+    nn::stackFramesWithGrid(frames, shape_.image_size, first_pixel, last_pixel, x);
+  } else {
+    nn::stackFrames(frames, first_pixel, last_pixel, x);
+  }
+}
+
+template <class T>
+void BlockTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) const {
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (int part = 0; part < threads_; ++part) {
-    nn::stackFrames(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
+    stack(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
   }
 }
 
@@ -196,7 +207,7 @@ void BlockTrunk<T>::predict(int thread, const core::FrameStack& frames, const fl
   if (on_all_threads) {
     stackOnAllThreads(frames, in);
   } else {
-    nn::stackFrames(frames, 0, pixels(), in);
+    stack(frames, 0, pixels(), in);
   }
   for (int b = 0; b < kBlocks; ++b) {
     if (on_all_threads) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "early_fusion/nn/dot.h"
+
 namespace early_fusion::nn {
 
 namespace {
@@ -50,16 +52,7 @@ void Linear::forwardRow(const float* x, float* y) const {
   const float* weight = parameters_.values().data() + weight_;
   const float* bias = parameters_.values().data() + bias_;
   for (int o = 0; o < outputs_; ++o) {
-    const float* row = weight + std::size_t(o) * inputs_;
-    float lanes[kLanes] = {};
-    int i = 0;
-    for (; i + kLanes <= inputs_; i += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) lanes[lane] += row[i + lane] * x[i + lane];
-    }
-    float sum = bias[o];
-    for (; i < inputs_; ++i) sum += row[i] * x[i];
-    for (int lane = 0; lane < kLanes; ++lane) sum += lanes[lane];
-    y[o] = sum;
+    y[o] = dot(weight + std::size_t(o) * inputs_, x, inputs_, bias[o]);
   }
 }
 

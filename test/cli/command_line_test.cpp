@@ -11,6 +11,8 @@
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
+#include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/policy_kinds.h"
 
 /// The program as a user runs it: what it prints, writes and returns.
 namespace early_fusion::cli {
@@ -132,6 +134,19 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   EXPECT_EQ(std::distance(fs::directory_iterator(path("steps")), fs::directory_iterator()), 48);
   ASSERT_EQ(run("render --step 47 --size 32 --out " + path("last.png")), 0) << errors_;
   EXPECT_EQ(core::readFile(path("steps/step_47.png")), core::readFile(path("last.png")));
+}
+
+TEST_F(CommandLine, RendersWhatAPolicyAttendsTo) {
+  const auto rednessOf = [&](const std::string& kind) {
+    model::PolicyOptions options;
+    options.kind = kind;
+    const auto world = world::loadWorld("");
+    model::savePolicy(*model::makePolicy(options, world->objects.vocabulary(), 1), {}).write(path(kind));
+    EXPECT_EQ(run("render --annotate --policy " + path(kind) + " --out " + path("a.png")), 0) << errors_;
+    const cv::Scalar mean = cv::mean(cv::imread(path("a.png")));
+    return mean[2] - mean[1];
+  };
+  EXPECT_GT(rednessOf("softmax_attention_map"), rednessOf("early_fusion") + 20);
 }
 
 TEST_F(CommandLine, PrintsTheUrdfsOfAWorld) {

@@ -8,6 +8,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::learning {
 namespace {
@@ -93,21 +94,30 @@ TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
   }
 }
 
-TEST_F(TrainingSessionTest, AnInterruptedSessionGoesOnBitForBit) {
-  TrainingSession whole(options("whole"), world());
-  runSession(whole, [](const Progress&) {});
-  {
-    TrainingSession interrupted(options("parts"), world());
-    runTo(interrupted, 6);
+TEST_F(TrainingSessionTest, AnInterruptedSessionOfAnyKindGoesOnBitForBit) {
+  for (const std::string& kind : model::policyKindNames()) {
+    SCOPED_TRACE(kind);
+    const auto ofKind = [&](const std::string& output) {
+      SessionOptions session = options(output + "_" + kind);
+      session.policy.kind = kind;
+      return session;
+    };
+    TrainingSession whole(ofKind("whole"), world());
+    runSession(whole, [](const Progress&) {});
+    {
+      TrainingSession interrupted(ofKind("parts"), world());
+      runTo(interrupted, 6);
+    }
+    SessionOptions again = ofKind("parts");
+    again.resume = true;
+    TrainingSession resumed(again, world());
+    EXPECT_TRUE(resumed.resumed());
+    EXPECT_EQ(resumed.trainer().trajectoriesSeen(), 6u);
+    runSession(resumed, [](const Progress&) {});
+    EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+    EXPECT_EQ(LearningCurve::parse(core::readFile(folder_ / ("parts_" + kind) / "curve.csv"), "curve").points().size(),
+              3u);
   }
-  SessionOptions again = options("parts");
-  again.resume = true;
-  TrainingSession resumed(again, world());
-  EXPECT_TRUE(resumed.resumed());
-  EXPECT_EQ(resumed.trainer().trajectoriesSeen(), 6u);
-  runSession(resumed, [](const Progress&) {});
-  EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
-  EXPECT_EQ(LearningCurve::parse(core::readFile(folder_ / "parts" / "curve.csv"), "curve").points().size(), 3u);
 }
 
 TEST_F(TrainingSessionTest, RefusesToOverwriteASessionAndToResumeAnother) {

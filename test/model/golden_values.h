@@ -48,8 +48,9 @@ inline GoldenValues goldenInputs(const nn::Parameters& first, const TestBatch& b
 
 /// The case's section in the file.
 inline std::string goldenName(const ParityCase& network) {
-  return "channels " + std::to_string(network.channels) + ", fusion_block " + std::to_string(network.fusion_block) +
-         ", image_size " + std::to_string(network.image_size);
+  return std::string(network.kind) + ", channels " + std::to_string(network.channels) + ", fusion_block " +
+         std::to_string(network.fusion_block) + ", image_size " + std::to_string(network.image_size) +
+         ", spatial_grid " + network.spatial_grid;
 }
 
 /// Each case has a section "[goldenName()]" with a line "name: numbers" for each value.

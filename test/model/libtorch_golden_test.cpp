@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "golden_values.h"
-#include "torch_early_fusion.h"
+#include "torch_network.h"
 #include "torch_parameters.h"
 
 namespace early_fusion::model {
@@ -18,8 +18,8 @@ std::vector<double> digestOf(const torch::Tensor& tensor) {
 }
 
 /// The case's network in libtorch with its first weights.
-std::shared_ptr<TorchEarlyFusion> torchNetwork(const ParityCase& network) {
-  const auto reference = std::make_shared<TorchEarlyFusion>(parityOptions(network), kParityItems);
+std::shared_ptr<TorchNetwork> torchNetwork(const ParityCase& network) {
+  const auto reference = std::make_shared<TorchNetwork>(parityOptions(network), kParityItems);
   copyParameters(parityPolicy(network)->parameters(), *reference);
   return reference;
 }

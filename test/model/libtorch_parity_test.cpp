@@ -1,32 +1,21 @@
-// The network against the same one in libtorch: same weights, same batch, same numbers.
+// Networks of every kind against the same ones in libtorch: same weights, same batch, same numbers.
 #include <gtest/gtest.h>
 
 #include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/nn/adam.h"
 #include "parity_case.h"
-#include "torch_early_fusion.h"
+#include "torch_network.h"
 #include "torch_parameters.h"
 
 namespace early_fusion::model {
 namespace {
 
-constexpr int kItems = 5;
-
-using Case = std::tuple<int, int, int>;  // channels, fusion block, image size
-
-class LibtorchParity : public testing::TestWithParam<Case> {
+class LibtorchParity : public testing::TestWithParam<ParityCase> {
  protected:
-  LibtorchParity() {
-    torch::manual_seed(1);
-    options.channels = std::get<0>(GetParam());
-    options.fusion_block = std::get<1>(GetParam());
-    options.image_size = std::get<2>(GetParam());
-    options.dropout = 0;
-    options.precision = "f32";
-    policy = makePolicy(options, testVocabulary(kItems), 3);
-    reference = std::make_shared<TorchEarlyFusion>(options, kItems);
-    drawNorms(policy->parameters());
-    policy->parametersChanged();
+  LibtorchParity()
+      : options(parityOptions(GetParam())),
+        policy(parityPolicy(GetParam())),
+        reference(std::make_shared<TorchNetwork>(options, kParityItems)) {
     copyParameters(policy->parameters(), *reference);
   }
 
@@ -44,14 +33,14 @@ class LibtorchParity : public testing::TestWithParam<Case> {
 
   PolicyOptions options;
   std::unique_ptr<TrainablePolicy> policy;
-  std::shared_ptr<TorchEarlyFusion> reference;
+  std::shared_ptr<TorchNetwork> reference;
 };
 
 TEST_P(LibtorchParity, PredictsTheSameProbabilities) {
-  const TestBatch batch(5, options.image_size, kItems, 2);
+  const TestBatch batch(5, options.image_size, kParityItems, 2);
   Probabilities probabilities;
   policy->predict(batch.observations(), probabilities);
-  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kParityItems);
   reference->eval();
   torch::NoGradGuard guard;
   const torch::Tensor expected = torch::softmax(reference->forward(torch_batch.images, torch_batch.counts), 1);
@@ -63,8 +52,8 @@ TEST_P(LibtorchParity, PredictsTheSameProbabilities) {
 }
 
 TEST_P(LibtorchParity, HasTheSameLossGradientsAndRunningStatistics) {
-  const TestBatch batch(5, options.image_size, kItems, 2);
-  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  const TestBatch batch(5, options.image_size, kParityItems, 2);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kParityItems);
   reference->train();
   torch::Tensor expected = torch_batch.loss(reference->forward(torch_batch.images, torch_batch.counts));
   expected.backward();
@@ -83,8 +72,8 @@ TEST_P(LibtorchParity, HasTheSameLossGradientsAndRunningStatistics) {
 TEST_P(LibtorchParity, LearnsAlongTheSameLosses) {
   // Adam divides a gradient by its own size, rounding errors too: an epsilon above them keeps the two runs together.
   constexpr double kRate = 1e-3, kEpsilon = 1e-3;
-  const TestBatch batch(8, options.image_size, kItems, 4);
-  const TorchBatch torch_batch(batch.samples, options.image_size, kItems);
+  const TestBatch batch(8, options.image_size, kParityItems, 4);
+  const TorchBatch torch_batch(batch.samples, options.image_size, kParityItems);
   nn::AdamOptions adam_options;
   adam_options.epsilon = kEpsilon;
   nn::Adam adam(policy->parameters().values().size(), adam_options);
@@ -106,9 +95,7 @@ TEST_P(LibtorchParity, LearnsAlongTheSameLosses) {
   EXPECT_LT(losses.back(), losses.front() - 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Networks, LibtorchParity,
-                         testing::Values(Case{16, 0, 32}, Case{16, 1, 32}, Case{16, 2, 32}, Case{16, 3, 32},
-                                         Case{32, 1, 48}, Case{48, 2, 16}));
+INSTANTIATE_TEST_SUITE_P(Networks, LibtorchParity, testing::ValuesIn(kParityCases), parityName);
 
 }  // namespace
 }  // namespace early_fusion::model

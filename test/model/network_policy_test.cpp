@@ -84,15 +84,17 @@ TEST_P(NetworkPolicyTest, TakesBatchesOfAnySizeInAnyOrder) {
 
 TEST(NetworkPolicy, InBfloat16PredictsAndLearnsAlmostTheSame) {
   if (!nn::processorHasBfloat16()) GTEST_SKIP() << "no native bfloat16 here";
+  constexpr int kImage = 64;  // with fewer pixels, rounding moves too large a share of the maxima that pooling takes
   for (const std::string& kind : policyKindNames()) {
     SCOPED_TRACE(kind);
     PolicyOptions options = smallOptions("bf16");
     options.kind = kind;
+    options.image_size = kImage;
     options.dropout = 0;
     const auto half = makeSmall(options);
     options.precision = "f32";
     const auto full = makeSmall(options);
-    TestBatch batch(32, kSmallImage, kSmallItems, 3);
+    TestBatch batch(32, kImage, kSmallItems, 3);
     for (Sample& sample : batch.samples) sample.unlikelihood.fill(0);
     train(*full, batch, 20);
     half->parameters().values() = full->parameters().values();
@@ -142,33 +144,21 @@ TEST(NetworkPolicy, GradientsAreTheSlopeOfTheLoss) {
   }
 }
 
-/// Every frame stack of the batch with three requests of the batch, side by side.
-std::vector<Sample> withThreeRequests(const TestBatch& batch) {
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < batch.samples.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Sample sample = batch.samples[(i + 2 * k) % batch.samples.size()];
-      sample.observation.frames = batch.samples[i].observation.frames;
-      samples.push_back(sample);
-    }
-  }
-  return samples;
-}
-
 TEST_P(NetworkPolicyTest, SharingAFrameStackBetweenRequestsChangesNothing) {
   const TestBatch batch(5, kSmallImage, kSmallItems, 3), copy(5, kSmallImage, kSmallItems, 3);
-  const std::vector<Sample> together = withThreeRequests(batch);
+  const std::vector<Sample> together = withRequests(batch, 3);
   // The same numbers, but no two neighbours with the same memory: every other sample looks at the copy.
   std::vector<Sample> apart = together;
-  const std::vector<Sample> copies = withThreeRequests(copy);
+  const std::vector<Sample> copies = withRequests(copy, 3);
   for (std::size_t i = 1; i < apart.size(); i += 2) apart[i].observation = copies[i].observation;
   const auto shared = makeSmall(GetParam()), separate = makeSmall(GetParam());
   EXPECT_NEAR(shared->lossAndGradients(together, 5), separate->lossAndGradients(apart, 5), isHalf() ? 5e-3 : 1e-5);
   const Eigen::VectorXf& a = shared->parameters().gradients();
   const Eigen::VectorXf& b = separate->parameters().gradients();
   EXPECT_LT((a - b).norm(), (isHalf() ? 0.05f : 1e-4f) * b.norm());
-  // The unbiased variance divides by the number of values, and fewer have been seen.
-  EXPECT_LT((shared->parameters().buffers() - separate->parameters().buffers()).cwiseAbs().maxCoeff(), 1e-3f);
+  // The unbiased variance divides by the number of values less one, and a trunk without a goal has seen a third of
+  // them.
+  EXPECT_LT((shared->parameters().buffers() - separate->parameters().buffers()).cwiseAbs().maxCoeff(), 2e-3f);
 }
 
 TEST_P(NetworkPolicyTest, DropoutIsDecidedByItsSeedAndOnlyInTraining) {

@@ -10,23 +10,42 @@ namespace early_fusion::model {
 
 /// A network whose figures are compared between implementations.
 struct ParityCase {
+  const char* kind;
   int channels, fusion_block, image_size;
+  const char* spatial_grid = "auto";
 };
 
-constexpr ParityCase kParityCases[] = {{16, 0, 32}, {16, 1, 32}, {16, 2, 32}, {16, 3, 32}, {32, 1, 48}, {48, 2, 16}};
+constexpr ParityCase kParityCases[] = {{"early_fusion", 16, 0, 32},
+                                       {"early_fusion", 16, 1, 32},
+                                       {"early_fusion", 16, 2, 32},
+                                       {"early_fusion", 16, 3, 32},
+                                       {"early_fusion", 32, 1, 48},
+                                       {"early_fusion", 48, 2, 16},
+                                       {"early_fusion", 16, 0, 32, "true"},
+                                       {"late_fusion", 16, 1, 32},
+                                       {"late_fusion", 32, 1, 48, "true"},
+                                       {"attention_map", 16, 1, 32},
+                                       {"attention_map", 32, 1, 48},
+                                       {"attention_map", 16, 1, 64, "false"},
+                                       {"softmax_attention_map", 16, 1, 32},
+                                       {"softmax_attention_map", 32, 1, 48},
+                                       {"softmax_attention_map", 16, 1, 64, "false"}};
 constexpr int kParityItems = 5;
 
-/// "Channels16FusionBlock0Size32", for INSTANTIATE_TEST_SUITE_P.
+/// "early_fusion_16_0_32_auto", for INSTANTIATE_TEST_SUITE_P.
 inline std::string parityName(const testing::TestParamInfo<ParityCase>& info) {
-  return "Channels" + std::to_string(info.param.channels) + "FusionBlock" + std::to_string(info.param.fusion_block) +
-         "Size" + std::to_string(info.param.image_size);
+  return std::string(info.param.kind) + "_" + std::to_string(info.param.channels) + "_" +
+         std::to_string(info.param.fusion_block) + "_" + std::to_string(info.param.image_size) + "_" +
+         info.param.spatial_grid;
 }
 
 inline PolicyOptions parityOptions(const ParityCase& network) {
   PolicyOptions options;
+  options.kind = network.kind;
   options.channels = network.channels;
   options.fusion_block = network.fusion_block;
   options.image_size = network.image_size;
+  options.spatial_grid = network.spatial_grid;
   options.dropout = 0;
   options.precision = "f32";
   return options;

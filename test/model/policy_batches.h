@@ -56,4 +56,17 @@ struct TestBatch {
   std::vector<Sample> samples;
 };
 
+/// Every frame stack of the batch with `requests` requests of the batch, side by side.
+inline std::vector<Sample> withRequests(const TestBatch& batch, int requests) {
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < batch.samples.size(); ++i) {
+    for (int k = 0; k < requests; ++k) {
+      Sample sample = batch.samples[(i + 2 * k) % batch.samples.size()];
+      sample.observation.frames = batch.samples[i].observation.frames;
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
 }  // namespace early_fusion::model

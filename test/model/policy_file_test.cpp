@@ -57,6 +57,16 @@ TEST(PolicyFile, HoldsWhatItsKindNeedsAndNoMore) {
   EXPECT_EQ(file.metadata.at("horizontal_fov_deg"), "60");
 }
 
+TEST(PolicyFile, SaysWhetherThereIsASpatialGridAndNotHowThatWasChosen) {
+  PolicyOptions options = smallOptions();
+  EXPECT_EQ(savePolicy(*makeSmall(options), {}).metadata.at("spatial_grid"), "false");
+  options.spatial_grid = "true";
+  EXPECT_EQ(savePolicy(*makeSmall(options), {}).metadata.at("spatial_grid"), "true");
+  options.kind = "attention_map";
+  options.spatial_grid = "auto";
+  EXPECT_EQ(savePolicy(*makeSmall(options), {}).metadata.at("spatial_grid"), "true");
+}
+
 /// The error of loadPolicy() for a changed file.
 std::string loadErrorAfter(const std::function<void(nn::WeightsFile&)>& change) {
   nn::WeightsFile file = savePolicy(*makeSmall(smallOptions()), {});
@@ -77,6 +87,7 @@ TEST(PolicyFile, NamesWhatIsWrongWithMetadata) {
       {"channels", "many", "many"},
       {"channels", "24", "channels: '24'"},
       {"fusion_block", "9", "9"},
+      {"spatial_grid", "yes", "spatial_grid: 'yes'"},
       {"image_size", "33", "image_size: '33'"},
       {"vocabulary", "mug, bowl", "metadata 'vocabulary' is not a JSON list"},
       {"vocabulary", "[\"mug\",\"mug\"]", "metadata 'vocabulary'"},
@@ -90,8 +101,8 @@ TEST(PolicyFile, NamesWhatIsWrongWithMetadata) {
     const std::string error = loadErrorAfter([&](nn::WeightsFile& file) { file.metadata[key] = value; });
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
-  for (const char* key : {"format", "kind", "channels", "fusion_block", "dropout", "image_size", "vocabulary",
-                          "actions", "horizontal_fov_deg"}) {
+  for (const char* key : {"format", "kind", "channels", "fusion_block", "spatial_grid", "dropout", "image_size",
+                          "vocabulary", "actions", "horizontal_fov_deg"}) {
     const std::string error = loadErrorAfter([&](nn::WeightsFile& file) { file.metadata.erase(key); });
     EXPECT_NE(error.find(std::string("metadata '") + key + "' is missing"), std::string::npos) << error;
   }

@@ -36,6 +36,33 @@ TEST(PolicyKinds, MakeAPolicyOfTheirName) {
   }
 }
 
+TEST(PolicyKinds, HaveAsManyParametersAsTheirDesignSays) {
+  struct Expected {
+    const char* kind;
+    int channels;
+    const char* spatial_grid;
+    Eigen::Index parameters;
+  };
+  const Expected cases[] = {{"early_fusion", 16, "auto", 27495},         {"early_fusion", 256, "auto", 6583815},
+                            {"early_fusion", 16, "true", 27783},         {"late_fusion", 16, "auto", 25447},
+                            {"late_fusion", 32, "auto", 97991},          {"late_fusion", 64, "auto", 384391},
+                            {"late_fusion", 128, "auto", 1522439},       {"late_fusion", 256, "auto", 6059527},
+                            {"late_fusion", 16, "true", 25735},          {"attention_map", 16, "auto", 9607},
+                            {"attention_map", 16, "false", 9319},        {"attention_map", 32, "auto", 34055},
+                            {"attention_map", 64, "auto", 127495},       {"attention_map", 128, "auto", 492551},
+                            {"attention_map", 256, "auto", 1935367},     {"softmax_attention_map", 16, "auto", 9607},
+                            {"softmax_attention_map", 16, "false", 9319}};
+  for (const Expected& expected : cases) {
+    PolicyOptions options;
+    options.kind = expected.kind;
+    options.channels = expected.channels;
+    options.spatial_grid = expected.spatial_grid;
+    const auto policy = makePolicy(options, testVocabulary(16), 1);
+    EXPECT_EQ(policy->parameters().values().size(), expected.parameters)
+        << expected.kind << ", " << expected.channels << " channels, spatial_grid " << expected.spatial_grid;
+  }
+}
+
 TEST(PolicyKinds, RefuseBadOptionsAndAnEmptyVocabulary) {
   PolicyOptions options = smallOptions();
   options.channels = 20;

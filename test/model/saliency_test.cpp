@@ -59,6 +59,17 @@ TEST(Tint, ReddensWhereTheSaliencyIs) {
   EXPECT_EQ(image.rgb[last + 1], 100);
 }
 
+TEST(Tint, LeavesNegativeRegionsAlone) {
+  core::Image image(16, 16);
+  std::fill(image.rgb.begin(), image.rgb.end(), 100);
+  Eigen::MatrixXf attention = Eigen::MatrixXf::Constant(4, 4, -3.f);
+  attention(0, 0) = 0.25f;
+  tint(image, attention);
+  EXPECT_GT(image.rgb[0], 150);
+  const std::size_t last = image.rgb.size() - 3;
+  for (std::size_t i = last; i < image.rgb.size(); ++i) EXPECT_EQ(image.rgb[i], 100);
+}
+
 TEST(Tint, LeavesAnImageAloneThatNothingHangsOn) {
   core::Image image(16, 16);
   std::fill(image.rgb.begin(), image.rgb.end(), 100);

@@ -1,6 +1,8 @@
 early_fusion_add_test(model action_choice_test)
+early_fusion_add_test(model attention_map_test)
 early_fusion_add_test(model early_fusion_test)
 early_fusion_add_test(model golden_parity_test)
+early_fusion_add_test(model late_fusion_test)
 early_fusion_add_test(model network_policy_test)
 early_fusion_add_test(model policy_file_test)
 early_fusion_add_test(model policy_head_test)

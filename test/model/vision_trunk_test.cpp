@@ -1,4 +1,5 @@
-// The trunk against four naive blocks in double, in a row: without a goal, and with one that joins at each place.
+// The trunk against four naive blocks in double, in a row: without a goal, and with one that joins at each place; with
+// and without the spatial grid.
 #include "early_fusion/model/vision_trunk.h"
 
 #include <gtest/gtest.h>
@@ -21,14 +22,34 @@ constexpr int kChannels = 16;
 constexpr int kGoalChannels = 4;
 constexpr int kNoFusion = kBlocks;
 
+struct TrunkCase {
+  int fusion_block;
+  bool spatial_grid;
+};
+
+/// (pixels, channels) of a frame stack as the first block sees them, but for nn::kByteScale.
+nn::Numbers naiveInput(const core::FrameStack& frames, bool spatial_grid) {
+  std::vector<float> image(std::size_t(kSize) * kSize * nn::kImageChannels);
+  nn::stackFrames(frames, 0, kSize * kSize, image.data());
+  nn::Numbers x;
+  for (int pixel = 0; pixel < kSize * kSize; ++pixel) {
+    const auto first = image.begin() + pixel * nn::kImageChannels;
+    x.insert(x.end(), first, first + nn::kImageChannels);
+    if (!spatial_grid) continue;
+    for (const int at : {pixel % kSize, pixel / kSize}) x.push_back(((at + 0.5) / kSize * 2 - 1) / nn::kByteScale);
+  }
+  return x;
+}
+
 /// One after the other, each image with its goal: what is shared in the trunk is repeated here.
 struct NaiveTrunk {
-  NaiveTrunk(int fusion_block, const FrameStackBatch& frame_stack_batch)
-      : batch(frame_stack_batch), fusion(fusion_block) {
+  NaiveTrunk(const TrunkCase& trunk, const FrameStackBatch& frame_stack_batch)
+      : batch(frame_stack_batch), fusion(trunk.fusion_block) {
     core::Random random(5);
     for (int b = 0; b < kBlocks; ++b) {
       nn::ConvBlockShape shape{};
-      shape.image_channels = b == 0 ? nn::kImageChannels : kChannels;
+      const int input_channels = nn::kImageChannels + (trunk.spatial_grid ? nn::kGridChannels : 0);
+      shape.image_channels = b == 0 ? input_channels : kChannels;
       shape.goal_channels = b == fusion ? kGoalChannels : 0;
       shape.out_channels = kChannels;
       shape.size = kSize >> b;
@@ -36,8 +57,7 @@ struct NaiveTrunk {
       blocks.emplace_back(shape, b < fusion ? batch.frameStackCount() : batch.goalCount(), random);
     }
     for (const core::FrameStack& frames : batch.frame_stacks) {
-      std::vector<float> x(std::size_t(kSize) * kSize * nn::kImageChannels);
-      nn::stackFrames(frames, 0, kSize * kSize, x.data());
+      const nn::Numbers x = naiveInput(frames, trunk.spatial_grid);
       image.insert(image.end(), x.begin(), x.end());
     }
   }
@@ -69,7 +89,7 @@ struct NaiveTrunk {
   nn::Numbers image;
 };
 
-class VisionTrunkTest : public testing::TestWithParam<int> {
+class VisionTrunkTest : public testing::TestWithParam<TrunkCase> {
  protected:
   VisionTrunkTest() {
     core::Random random(3);
@@ -82,8 +102,8 @@ class VisionTrunkTest : public testing::TestWithParam<int> {
                            {frames_[3].data(), nullptr, nullptr}};
     batch_.first_goal = {0, 2, 3, 6};
     naive_ = std::make_unique<NaiveTrunk>(GetParam(), batch_);
-    VisionTrunkShape shape{kChannels, kSize, std::nullopt};
-    if (GetParam() != kNoFusion) shape.fusion = TrunkFusion{GetParam(), kGoalChannels};
+    VisionTrunkShape shape{kChannels, kSize, std::nullopt, GetParam().spatial_grid};
+    if (fuses()) shape.fusion = TrunkFusion{GetParam().fusion_block, kGoalChannels};
     trunk_ = makeVisionTrunk(parameters_, shape, "f32", 2);
     maps_ = dmaps_ = nn::Matrix::Zero(trunk_->mapCount(batch_), shape.mapSize());
     goals_ = dgoals_ = nn::Matrix::Zero(batch_.goalCount(), kGoalChannels);
@@ -101,12 +121,12 @@ class VisionTrunkTest : public testing::TestWithParam<int> {
       }
     }
     for (Eigen::Index i = 0; fuses() && i < goals_.size(); ++i) {
-      goals_.data()[i] = static_cast<float>(naive_->blocks[GetParam()].goals[i]);
+      goals_.data()[i] = static_cast<float>(naive_->blocks[GetParam().fusion_block].goals[i]);
     }
     trunk_->loadWeights();
   }
 
-  bool fuses() const { return GetParam() != kNoFusion; }
+  bool fuses() const { return GetParam().fusion_block != kNoFusion; }
 
   std::vector<std::pair<std::string, nn::Numbers*>> tensorsOf(int block) {
     nn::NaiveConvBlock& naive = naive_->blocks[block];
@@ -187,7 +207,7 @@ TEST_P(VisionTrunkTest, GradientsAreTheSlopeOfTheNaiveTrunk) {
       expectSlope(slice.name, *numbers, parameters_.gradients().data() + slice.offset, factors);
     }
   }
-  if (fuses()) expectSlope("goals", naive_->blocks[GetParam()].goals, dgoals_.data(), factors);
+  if (fuses()) expectSlope("goals", naive_->blocks[GetParam().fusion_block].goals, dgoals_.data(), factors);
 }
 
 TEST_P(VisionTrunkTest, PredictsWhatItNormalisesWithRunningStatisticsOnAnyThread) {
@@ -208,7 +228,10 @@ TEST_P(VisionTrunkTest, PredictsWhatItNormalisesWithRunningStatisticsOnAnyThread
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fusions, VisionTrunkTest, testing::Values(kNoFusion, 0, 1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(Fusions, VisionTrunkTest,
+                         testing::Values(TrunkCase{kNoFusion, false}, TrunkCase{0, false}, TrunkCase{1, false},
+                                         TrunkCase{2, false}, TrunkCase{3, false}, TrunkCase{kNoFusion, true},
+                                         TrunkCase{1, true}));
 
 }  // namespace
 }  // namespace early_fusion::model

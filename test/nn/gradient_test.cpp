@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "early_fusion/nn/attention_pooling.h"
 #include "early_fusion/nn/dropout.h"
 #include "early_fusion/nn/linear.h"
 #include "early_fusion/nn/softmax_cross_entropy.h"
@@ -190,6 +191,49 @@ struct CrossEntropyCheck : LayerCheck {
   Numbers logits, targets, unlikelihoods, weights;
 };
 
+/// Two queries that share a map, whose gradient is the sum of both.
+struct AttentionPoolingCheck : LayerCheck {
+  static constexpr int kChannels = 5, kRegions = 19, kQueries = 2;
+
+  explicit AttentionPoolingCheck(AttentionWeights weights)
+      : kind(weights),
+        map(randomNumbers(kChannels * kRegions, random)),
+        queries(randomNumbers(kQueries * kChannels, random)),
+        factors(randomNumbers(kQueries * kChannels, random)) {}
+
+  double loss() override {
+    double sum = 0;
+    for (int q = 0; q < kQueries; ++q) {
+      sum += weightedSum(naiveAttentionPooling(kind, map, rowOf(queries, q)).pooled, rowOf(factors, q));
+    }
+    return sum;
+  }
+
+  std::vector<Checked> tensors() override {
+    AttentionPooling layer(kind, kChannels, kRegions);
+    const Matrix map_row = toMatrix(map, 1, kChannels * kRegions), query_rows = toMatrix(queries, kQueries, kChannels),
+                 factor_rows = toMatrix(factors, kQueries, kChannels);
+    Matrix weights(kQueries, kRegions), pooled(kQueries, kChannels), dqueries(kQueries, kChannels);
+    Matrix dmap = Matrix::Zero(1, kChannels * kRegions);
+    for (int q = 0; q < kQueries; ++q) {
+      layer.forward(map_row.data(), query_rows.row(q).data(), weights.row(q).data(), pooled.row(q).data());
+    }
+    for (int q = 0; q < kQueries; ++q) {
+      layer.backward(map_row.data(), query_rows.row(q).data(), weights.row(q).data(), factor_rows.row(q).data(),
+                     dmap.data(), dqueries.row(q).data());
+    }
+    return {{"map", &map, fromMatrix(dmap)}, {"queries", &queries, fromMatrix(dqueries)}};
+  }
+
+  static Numbers rowOf(const Numbers& numbers, int row) {
+    return Numbers(numbers.begin() + row * kChannels, numbers.begin() + (row + 1) * kChannels);
+  }
+
+  AttentionWeights kind;
+  core::Random random{15};
+  Numbers map, queries, factors;
+};
+
 struct Case {
   const char* name;
   std::function<std::unique_ptr<LayerCheck>()> make;
@@ -202,6 +246,10 @@ ConvBlockShape blockShape(int image_channels, int goal_channels, int out_channel
 template <class Check = ConvBlockCheck>
 std::function<std::unique_ptr<LayerCheck>()> convBlock(const ConvBlockShape& shape, int images) {
   return [=] { return std::make_unique<Check>(shape, images); };
+}
+
+std::function<std::unique_ptr<LayerCheck>()> attentionPooling(AttentionWeights weights) {
+  return [=] { return std::make_unique<AttentionPoolingCheck>(weights); };
 }
 
 class Gradients : public testing::TestWithParam<Case> {};
@@ -235,6 +283,8 @@ INSTANTIATE_TEST_SUITE_P(Layers, Gradients,
                          testing::Values(Case{"Linear", [] { return std::make_unique<LinearCheck>(); }},
                                          Case{"Dropout", [] { return std::make_unique<DropoutCheck>(); }},
                                          Case{"CrossEntropy", [] { return std::make_unique<CrossEntropyCheck>(); }},
+                                         Case{"LinearAttention", attentionPooling(AttentionWeights::kLinear)},
+                                         Case{"SoftmaxAttention", attentionPooling(AttentionWeights::kSoftmax)},
                                          Case{"ConvBlock", convBlock(blockShape(16, 0, 16, 6), 3)},
                                          Case{"ConvBlockWithGoal", convBlock(blockShape(16, 4, 16, 6), 3)},
                                          Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 4, 16, 2), 5)},
@@ -242,6 +292,7 @@ INSTANTIATE_TEST_SUITE_P(Layers, Gradients,
                                               convBlock<RenormalisedCheck>(blockShape(16, 4, 16, 6), 3)},
                                          Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 3, 32, 4), 1)},
                                          Case{"FirstConvBlock", convBlock(blockShape(9, 0, 16, 4, 0.25f), 2)},
+                                         Case{"FirstConvBlockWithGrid", convBlock(blockShape(11, 0, 16, 4, 0.25f), 2)},
                                          Case{"FirstConvBlockWithGoal", convBlock(blockShape(9, 4, 16, 4), 2)}),
                          [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "early_fusion/core/random.h"
+#include "early_fusion/nn/attention_pooling.h"
 #include "early_fusion/nn/conv_block.h"
 
 namespace early_fusion::nn {
@@ -119,6 +120,29 @@ struct NaiveConvBlock {
     return normalised(z, mean, variance);
   }
 };
+
+struct NaiveAttention {
+  Numbers weights;  // (regions)
+  Numbers pooled;   // (channels)
+};
+
+/// AttentionPooling in double: map (channels, regions), query (channels).
+inline NaiveAttention naiveAttentionPooling(AttentionWeights kind, const Numbers& map, const Numbers& query) {
+  const std::size_t channels = query.size(), regions = map.size() / channels;
+  NaiveAttention result{Numbers(regions), Numbers(channels)};
+  double sum = 0;
+  for (std::size_t i = 0; i < regions; ++i) {
+    double score = 0;
+    for (std::size_t c = 0; c < channels; ++c) score += query[c] * map[c * regions + i];
+    result.weights[i] = kind == AttentionWeights::kSoftmax ? std::exp(score) : score;
+    sum += kind == AttentionWeights::kSoftmax ? result.weights[i] : 1;
+  }
+  for (std::size_t i = 0; i < regions; ++i) {
+    result.weights[i] /= sum;
+    for (std::size_t c = 0; c < channels; ++c) result.pooled[c] += result.weights[i] * map[c * regions + i];
+  }
+  return result;
+}
 
 /// A channels-last map in another layout.
 template <class T>

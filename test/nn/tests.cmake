@@ -1,6 +1,8 @@
 early_fusion_add_test(nn adam_test)
+early_fusion_add_test(nn attention_pooling_test)
 early_fusion_add_test(nn conv_block_test)
 early_fusion_add_test(nn convolution_test)
+early_fusion_add_test(nn dot_test)
 early_fusion_add_test(nn dropout_test)
 early_fusion_add_test(nn frame_stack_test)
 early_fusion_add_test(nn gradient_test)

@@ -120,7 +120,7 @@ TEST_F(ActingPolicyTest, UnusableWeightsLeaveTheOldOnesActing) {
 TEST_F(ActingPolicyTest, ShowsTheLastImageTinted) {
   acting_.decide(frame(1), {"mug"}, 7, 0);
   acting_.decide(frame(2), {"mug"}, 7, 1);
-  const core::Image plain = frame(2), tinted = acting_.lastImageWithSaliency(4);
+  const core::Image plain = frame(2), tinted = acting_.lastImageTinted(4);
   ASSERT_EQ(tinted.rgb.size(), plain.rgb.size());
   int redder = 0;
   for (std::size_t i = 0; i < plain.rgb.size(); i += 3) {
@@ -129,6 +129,17 @@ TEST_F(ActingPolicyTest, ShowsTheLastImageTinted) {
     redder += tinted.rgb[i] > plain.rgb[i];
   }
   EXPECT_GT(redder, 0);
+}
+
+TEST_F(ActingPolicyTest, ShowsWhatAKindWithAttentionAttendsToInsteadOfSaliency) {
+  acting_.decide(frame(1), {"mug"}, 7, 0);
+  EXPECT_EQ(acting_.lastImageTinted(0).rgb, frame(1).rgb) << "without attention and a grid nothing is tinted";
+  options_.kind = "softmax_attention_map";
+  acting_.load(model::savePolicy(*model::makePolicy(options_, core::Vocabulary({"bowl", "mug"}), 3), {}), "test", {});
+  acting_.decide(frame(1), {"mug"}, 7, 0);
+  const core::Image tinted = acting_.lastImageTinted(0);
+  EXPECT_NE(tinted.rgb, frame(1).rgb);
+  EXPECT_EQ(acting_.lastImageTinted(4).rgb, tinted.rgb);
 }
 
 TEST_F(ActingPolicyTest, TellsTheFieldOfViewOfItsWeightsAndRefusesThoseWithout) {

@@ -158,8 +158,11 @@ TEST_F(Launch, TrainReachesEveryOptionOfTrainingThroughOptions) {
 }
 
 TEST_F(Launch, TrainLeavesToThePresetWhatIsNotGiven) {
-  const std::string dumped = dump("train.launch", {"output:=/tmp/run", "channels:=32"});
+  const std::string dumped = dump("train.launch", {"output:=/tmp/run", "channels:=32", "kind:=late_fusion"});
   EXPECT_EQ(parameter("/trainer/channels", dumped), "32");
+  EXPECT_EQ(parameter("/trainer/kind", dumped), "late_fusion");
+  const std::string defaults = dump("train.launch", {"output:=/tmp/run"});
+  EXPECT_EQ(parameter("/trainer/kind", defaults), "(none)");
   for (const char* name : {"trajectories", "precision", "window", "dropout"}) {
     EXPECT_EQ(parameter(std::string("/trainer/") + name, dumped), "(none)");
   }

@@ -50,9 +50,7 @@ class SessionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     files_ = new SmallSession();
-    const learning::SessionOptions options = learning::resolveSessionOptions(given("reference"), "test");
-    learning::TrainingSession session(options, world::loadWorld(options.world));
-    learning::runSession(session, [](const learning::Progress&) {});
+    trainHere(given("reference"));
   }
   static void TearDownTestSuite() { delete files_; }
 
@@ -62,6 +60,12 @@ class SessionTest : public testing::Test {
             {"preset", files_->preset()},
             {"output", files_->path(output)},
             {"evaluation_episodes", std::to_string(SmallSession::kEvaluationEpisodes)}};
+  }
+
+  static void trainHere(const std::vector<std::pair<std::string, std::string>>& given_options) {
+    const learning::SessionOptions options = learning::resolveSessionOptions(given_options, "test");
+    learning::TrainingSession session(options, world::loadWorld(options.world));
+    learning::runSession(session, [](const learning::Progress&) {});
   }
 
   void SetUp() override {
@@ -162,14 +166,19 @@ TEST_F(SessionTest, AnyNumberOfWorkersTrainsTheSameWeights) {
   }
 }
 
-TEST_F(SessionTest, TwoSessionsSideBySideInTheirNamespaces) {
+TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
+  const std::string kind = "softmax_attention_map";
   const auto left = launchTraining("left", {"__ns:=left", "private_tf:=true"});
-  const auto right = launchTraining("right", {"__ns:=right", "private_tf:=true", "seed:=2"});
+  const auto right = launchTraining("right", {"__ns:=right", "private_tf:=true", "kind:=" + kind});
   ASSERT_TRUE(left->ends(kSessionSec)) << left->output();
   ASSERT_TRUE(right->ends(kSessionSec)) << right->output();
   ASSERT_TRUE(exists("left/result.json")) << left->output();
   ASSERT_TRUE(exists("right/result.json")) << right->output();
   EXPECT_TRUE(weights("left") == weights("reference"));
+  auto attending = given("attending");
+  attending.emplace_back("kind", kind);
+  trainHere(attending);
+  EXPECT_TRUE(weights("right") == weights("attending"));
   EXPECT_FALSE(weights("right") == weights("reference"));
 }
 

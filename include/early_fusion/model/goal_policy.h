@@ -27,8 +27,8 @@ class GoalPolicy {
   /// Inference with running statistics and no dropout. @param probabilities (observations, 7), rows sum to 1.
   virtual void predict(const std::vector<Observation>& observations, Probabilities& probabilities) = 0;
 
-  /// The attention to each region of the newest frame, (rows, columns), row 0 on top. Empty if the kind has no
-  /// attention.
+  /// The attention to each region of the newest frame, (rows, columns), row 0 on top. Negative where the region counts
+  /// with the opposite sign. Empty if the kind has no attention.
   virtual std::optional<Eigen::MatrixXf> attention(const Observation& /*observation*/) { return std::nullopt; }
 };
 

@@ -34,6 +34,15 @@ class NetworkPolicy : public TrainablePolicy {
                 const VisionTrunkShape& trunk_shape, int feature_count);
 
   VisionTrunk& trunk() { return *trunk_; }
+  int threads() const { return threads_; }
+
+  /// predictRow() of the observation with all threads, for what a kind keeps of it.
+  void predictFeatures(const Observation& observation);
+
+  /// Makes room for rows. The matrix may lose what it held.
+  static void reserveRows(nn::Matrix& matrix, int rows, int columns) {
+    if (matrix.rows() < rows) matrix.resize(rows, columns);
+  }
 
  private:
   /// Training: goals (goalCount(), channels) -> features (goalCount(), feature_count).
@@ -51,6 +60,8 @@ class NetworkPolicy : public TrainablePolicy {
   void refreshWeights();
   void refreshInference();
   void reserve(int rows);
+  void reservePrediction(int rows);
+  void predictFeatures(int row, const Observation& observation, int thread, float* features);
 
   PolicyOptions options_;
   core::Vocabulary vocabulary_;

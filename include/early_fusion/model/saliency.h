@@ -14,8 +14,8 @@ namespace early_fusion::model {
 /// Source: Zeiler and Fergus, "Visualizing and Understanding Convolutional Networks", ECCV 2014, sec. 4.2.
 Eigen::MatrixXf occlusionSaliency(GoalPolicy& policy, const Observation& observation, int grid);
 
-/// Tints the image red in proportion to the saliency, relative to its maximum. Does nothing if the saliency is 0
-/// everywhere.
-void tint(core::Image& image, const Eigen::MatrixXf& saliency);
+/// Tints the image red in proportion to a map, relative to its maximum: saliency, or attention, whose negative numbers
+/// tint nothing. Does nothing if no number is above 0.
+void tint(core::Image& image, const Eigen::MatrixXf& map);
 
 }  // namespace early_fusion::model

@@ -25,10 +25,13 @@ struct VisionTrunkShape {
   int channels;
   int image_size;                     ///< [px], a multiple of 16
   std::optional<TrunkFusion> fusion;  ///< empty: no goal joins
+  bool spatial_grid = false;          ///< whether the first block also sees each pixel's coordinates
 
   int mapEdge() const { return image_size >> kBlocks; }
+  /// The number of positions of the last map.
+  int regions() const { return mapEdge() * mapEdge(); }
   /// The number of elements of the last map.
-  int mapSize() const { return channels * mapEdge() * mapEdge(); }
+  int mapSize() const { return channels * regions(); }
 };
 
 /// The four convolution blocks that compute a feature map from a frame stack, with or without a goal.
@@ -43,6 +46,8 @@ class VisionTrunk {
   static constexpr int kAllThreads = -1;
 
   virtual ~VisionTrunk() = default;
+
+  virtual const VisionTrunkShape& shape() const = 0;
 
   virtual void initialise(core::Random& random) = 0;
   /// Must be called after the parameters, or the running statistics, have changed.

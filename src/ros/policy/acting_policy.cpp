@@ -51,10 +51,14 @@ Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::s
   return decision;
 }
 
-core::Image ActingPolicy::lastImageWithSaliency(int grid) {
+core::Image ActingPolicy::lastImageTinted(int saliency_grid) {
   assert(!frames_.empty());
   core::Image image = frames_.back();
-  model::tint(image, model::occlusionSaliency(*policy_, observation(), grid));
+  if (const auto attention = policy_->attention(observation())) {
+    model::tint(image, *attention);
+  } else if (saliency_grid > 0) {
+    model::tint(image, model::occlusionSaliency(*policy_, observation(), saliency_grid));
+  }
   return image;
 }
 

@@ -33,7 +33,7 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "maximum number of annotated images a second");
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
           "edge of the grid of occlusion saliency that tints the annotated image; costs one prediction for each cell; "
-          "0: no tint");
+          "0: no tint; kinds with attention show their own map");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -96,7 +96,7 @@ void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image, const RequestC
   answer_valid_ = true;
   action_publisher_.publish(answer_);
   latency_sec_ = (::ros::WallTime::now() - began).toSec();
-  publishAnnotated(frame, image->header, *request);
+  publishAnnotated(image->header, *request);
 }
 
 void PolicyNode::onWeights(const Weights& message) {
@@ -163,17 +163,17 @@ void PolicyNode::publishStatus() {
   status_publisher_.publish(status);
 }
 
-void PolicyNode::publishAnnotated(const core::Image& frame, const std_msgs::Header& header, const Request& request) {
+void PolicyNode::publishAnnotated(const std_msgs::Header& header, const Request& request) {
   if (annotated_publisher_.getNumSubscribers() == 0) return;
   const ::ros::WallTime now = ::ros::WallTime::now();
   if (now - annotated_ < ::ros::WallDuration(1 / options_.annotated_rate_hz)) return;
   annotated_ = now;
   model::Annotation annotation;
   annotation.cone_radius_px =
-      model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, frame.width);
+      model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, policy_.imageSize());
   annotation.request = request.items;
   annotation.action = answer_.name;
-  const core::Image tinted = options_.saliency_grid > 0 ? policy_.lastImageWithSaliency(options_.saliency_grid) : frame;
+  const core::Image tinted = policy_.lastImageTinted(options_.saliency_grid);
   annotated_publisher_.publish(imageMessage(model::annotate(tinted, annotation, options_.annotated_scale), header));
 }
 

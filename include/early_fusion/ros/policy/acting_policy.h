@@ -52,8 +52,9 @@ class ActingPolicy {
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);
 
-  /// The last frame, tinted by model::occlusionSaliency().
-  core::Image lastImageWithSaliency(int grid);
+  /// The last frame, tinted by what the policy attends to. A kind without attention: by model::occlusionSaliency() on a
+  /// grid of saliency_grid * saliency_grid cells; 0: not tinted.
+  core::Image lastImageTinted(int saliency_grid);
 
  private:
   model::Observation observation() const;

@@ -48,7 +48,7 @@ class PolicyNode {
   void load(const std::string& id, nn::WeightsFile file, const std::string& source, const Acting& acting);
   void loadFile(const std::string& path);
   void publishStatus();
-  void publishAnnotated(const core::Image& frame, const std_msgs::Header& header, const Request& request);
+  void publishAnnotated(const std_msgs::Header& header, const Request& request);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request>;

@@ -11,13 +11,17 @@
 
 namespace early_fusion::model {
 
-/// The network of EarlyFusion, written with libtorch's own modules: the second implementation.
-struct TorchEarlyFusion : torch::nn::Module {
-  TorchEarlyFusion(const PolicyOptions& options, int items) : options_(options) {
+/// The networks of all kinds, written with libtorch's own modules: the second implementation.
+struct TorchNetwork : torch::nn::Module {
+  TorchNetwork(const PolicyOptions& options, int items)
+      : options_(options),
+        fuses_early_(options.kind == "early_fusion"),
+        attends_(options.kind == "attention_map" || options.kind == "softmax_attention_map"),
+        grid_(options.usesSpatialGrid(attends_)) {
     const int c = options.channels;
     for (int b = 0; b < 4; ++b) {
-      const int image_channels = b == 0 ? 9 : c;
-      const int in = image_channels + (b == options.fusion_block ? c : 0);
+      const int image_channels = b > 0 ? c : grid_ ? 11 : 9;
+      const int in = image_channels + (fuses_early_ && b == options.fusion_block ? c : 0);
       auto block = std::make_shared<torch::nn::Module>("block");
       convolutions_.push_back(
           block->register_module("conv", torch::nn::Conv2d(torch::nn::Conv2dOptions(in, c, 3).padding(1))));
@@ -25,28 +29,55 @@ struct TorchEarlyFusion : torch::nn::Module {
       register_module("block" + std::to_string(b + 1), block);
     }
     const int edge = options.image_size / 16;
+    const int map = c * edge * edge;
     embedding_ = register_module("embedding", torch::nn::Linear(items, c));
-    hidden_ = register_module("hidden", torch::nn::Linear(c * edge * edge, c));
+    hidden_ = register_module("hidden", torch::nn::Linear(attends_ ? 2 * c : fuses_early_ ? map : map + c, c));
     output_ = register_module("output", torch::nn::Linear(c, core::kActionCount));
   }
 
-  /// images (N,9,S,S) in [0, 1], counts (N,items) -> logits (N,7).
+  /// images (N,9,S,S) as TorchBatch makes them, counts (N * k,items): those of an image side by side -> logits (N *
+  /// k,7).
   torch::Tensor forward(const torch::Tensor& images, const torch::Tensor& counts) {
     const torch::Tensor goal = embedding_->forward(counts);
-    torch::Tensor x = images;
+    torch::Tensor x = grid_ ? withGrid(images) : images;
     for (int b = 0; b < 4; ++b) {
-      if (b == options_.fusion_block) {
-        const torch::Tensor tiled =
-            goal.unsqueeze(2).unsqueeze(3).expand({x.size(0), goal.size(1), x.size(2), x.size(3)});
-        x = torch::cat({x, tiled}, 1);
-      }
+      if (fuses_early_ && b == options_.fusion_block) x = withTiled(oneARow(x, goal), goal);
       x = norms_[b]->forward(torch::relu(torch::max_pool2d(convolutions_[b]->forward(x), 2)));
     }
-    x = torch::relu(hidden_->forward(x.flatten(1)));
+    x = torch::relu(hidden_->forward(features(oneARow(x, goal), goal)));
     return output_->forward(torch::dropout(x, options_.dropout, is_training()));
   }
 
+  /// The map of each row's image.
+  static torch::Tensor oneARow(const torch::Tensor& x, const torch::Tensor& goal) {
+    return x.size(0) == goal.size(0) ? x : x.repeat_interleave(goal.size(0) / x.size(0), 0);
+  }
+
+  static torch::Tensor withGrid(const torch::Tensor& x) {
+    const std::int64_t size = x.size(2);
+    const torch::Tensor centres = (2 * torch::arange(size, torch::kFloat) + 1 - size) / size;
+    const torch::Tensor columns = centres.view({1, 1, 1, size}).expand({x.size(0), 1, size, size});
+    const torch::Tensor rows = centres.view({1, 1, size, 1}).expand({x.size(0), 1, size, size});
+    return torch::cat({x, columns, rows}, 1);
+  }
+
+  static torch::Tensor withTiled(const torch::Tensor& x, const torch::Tensor& goal) {
+    return torch::cat({x, goal.unsqueeze(2).unsqueeze(3).expand({x.size(0), goal.size(1), x.size(2), x.size(3)})}, 1);
+  }
+
+  /// What the head decides from.
+  torch::Tensor features(const torch::Tensor& map, const torch::Tensor& goal) const {
+    if (fuses_early_) return map.flatten(1);
+    if (!attends_) return torch::cat({map.flatten(1), goal}, 1);
+    const torch::Tensor regions = map.flatten(2);                                    // (N,C,regions)
+    const torch::Tensor scores = torch::bmm(goal.unsqueeze(1), regions).squeeze(1);  // (N,regions)
+    const torch::Tensor weights =
+        options_.kind == "attention_map" ? scores / scores.size(1) : torch::softmax(scores, 1);
+    return torch::cat({torch::bmm(regions, weights.unsqueeze(2)).squeeze(2), goal}, 1);
+  }
+
   PolicyOptions options_;
+  bool fuses_early_, attends_, grid_;
   std::vector<torch::nn::Conv2d> convolutions_;
   std::vector<torch::nn::BatchNorm2d> norms_;
   torch::nn::Linear embedding_{nullptr}, hidden_{nullptr}, output_{nullptr};
