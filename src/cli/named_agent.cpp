@@ -1,5 +1,8 @@
 #include "named_agent.h"
 
+#include <cmath>
+#include <sstream>
+
 #include "early_fusion/core/error.h"
 #include "early_fusion/model/policy_file.h"
 
@@ -21,6 +24,13 @@ NamedAgent makeNamedAgent(const std::string& name, const std::string& mode, std:
     throw core::Error(name + ": its frames have " + std::to_string(named.policy->options().image_size) +
                       " px and the world's have " + std::to_string(world.options.image_size) +
                       " px; set the world's image_size");
+  }
+  if (std::abs(named.policy->options().horizontal_fov_deg - world.options.horizontal_fov_deg) > 0.01) {
+    std::ostringstream text;
+    text << name << ": its frames show " << named.policy->options().horizontal_fov_deg
+         << " degrees and the world's show " << world.options.horizontal_fov_deg
+         << "; set the world's horizontal_fov_deg";
+    throw core::Error(text.str());
   }
   named.agent = learning::makePolicyAgent(*named.policy, model::actionChoiceFromName(mode), seed);
   return named;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
@@ -49,17 +50,38 @@ std::string meshFile(const std::string& name, const std::string& urdf_file) {
   return core::resolvePath(urdf_file, name);
 }
 
-TexturedMesh meshOf(const urdf::Geometry& geometry, std::uint32_t colour, const std::string& urdf_file,
+void requirePositive(std::initializer_list<double> sizes) {
+  for (const double size : sizes) {
+    if (size > 0 && std::isfinite(size)) continue;
+    throw core::Error("a visual or collision has a shape of size " + std::to_string(size) +
+                      " m; every size must be a positive number");
+  }
+}
+
+/// @param shape null where the URDF's parser knows none of the shapes or refuses its size.
+TexturedMesh meshOf(const urdf::GeometrySharedPtr& shape, std::uint32_t colour, const std::string& urdf_file,
                     int max_triangles) {
+  if (!shape) {
+    throw core::Error(
+        "a visual or collision has no valid geometry; use a box, cylinder, sphere or mesh of positive size");
+  }
+  const urdf::Geometry& geometry = *shape;
   switch (geometry.type) {
-    case urdf::Geometry::BOX:
-      return boxMesh(toEigen(static_cast<const urdf::Box&>(geometry).dim), colour);
+    case urdf::Geometry::BOX: {
+      const Eigen::Vector3d size = toEigen(static_cast<const urdf::Box&>(geometry).dim);
+      requirePositive({size.x(), size.y(), size.z()});
+      return boxMesh(size, colour);
+    }
     case urdf::Geometry::CYLINDER: {
       const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      requirePositive({cylinder.radius, cylinder.length});
       return cylinderMesh(cylinder.radius, cylinder.length, colour);
     }
-    case urdf::Geometry::SPHERE:
-      return sphereMesh(static_cast<const urdf::Sphere&>(geometry).radius, colour);
+    case urdf::Geometry::SPHERE: {
+      const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
+      requirePositive({radius});
+      return sphereMesh(radius, colour);
+    }
     case urdf::Geometry::MESH:
       break;
   }
@@ -88,8 +110,7 @@ void addObstacles(const urdf::Link& link, const Eigen::Isometry3d& world_from_li
                   std::vector<std::shared_ptr<const PlacedHull>>& obstacles) {
   constexpr double kLevel = 0.001;  // [m]
   for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
-    if (!collision->geometry) continue;
-    const TexturedMesh mesh = meshOf(*collision->geometry, kLightGrey, urdf_file, max_triangles);
+    const TexturedMesh mesh = meshOf(collision->geometry, kLightGrey, urdf_file, max_triangles);
     auto hull = std::make_shared<const PlacedHull>(collisionHull(mesh), world_from_link * toEigen(collision->origin));
     if (hull->bounds().max().z() > counter_top + kLevel) obstacles.push_back(std::move(hull));
   }
@@ -98,7 +119,7 @@ void addObstacles(const urdf::Link& link, const Eigen::Isometry3d& world_from_li
 }  // namespace
 
 Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_link, int max_triangles) {
-  const urdf::ModelInterfaceSharedPtr model = loadUrdf(urdf_file);
+  const urdf::ModelInterfaceSharedPtr model = loadWholeUrdf(urdf_file);
   const urdf::LinkConstSharedPtr counter = model->getLink(counter_link);
   if (!counter) {
     throw core::Error(urdf_file + ": no link '" + counter_link +
@@ -111,8 +132,7 @@ Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_lin
     const Eigen::Isometry3d world_from_link = worldFromLink(*model, name, urdf_file);
     try {
       for (const urdf::VisualSharedPtr& visual : link->visual_array) {
-        if (!visual->geometry) continue;
-        kitchen.meshes.push_back({name, meshOf(*visual->geometry, colourOf(*visual), urdf_file, max_triangles),
+        kitchen.meshes.push_back({name, meshOf(visual->geometry, colourOf(*visual), urdf_file, max_triangles),
                                   world_from_link * toEigen(visual->origin)});
       }
       addObstacles(*link, world_from_link, kitchen.counter_top.z, urdf_file, max_triangles, kitchen.obstacles);

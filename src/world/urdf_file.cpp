@@ -28,13 +28,11 @@ class Complaints : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-}  // namespace
-
-urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+/// @param reason set to what the parser complained of.
+urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason) {
   const std::string xml = core::readFile(path);
   Complaints complaints;
   urdf::ModelInterfaceSharedPtr model;
-  std::string reason;
   try {
     model = urdf::parseURDF(xml);
     reason = complaints.text();
@@ -43,6 +41,21 @@ urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
   }
   if (model && model->getRoot()) return model;
   throw core::Error(path + ": not a valid URDF: " + (reason.empty() ? "no root link" : reason));
+}
+
+}  // namespace
+
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+  std::string reason;
+  return parse(path, reason);
+}
+
+urdf::ModelInterfaceSharedPtr loadWholeUrdf(const std::string& path) {
+  std::string reason;
+  urdf::ModelInterfaceSharedPtr model = parse(path, reason);
+  if (reason.empty()) return model;
+  throw core::Error(path + ": a part cannot be read: " + reason +
+                    "; shapes are box, cylinder, sphere and mesh, with positive sizes");
 }
 
 Eigen::Vector3d toEigen(const urdf::Vector3& vector) { return Eigen::Vector3d(vector.x, vector.y, vector.z); }

@@ -11,6 +11,9 @@ namespace early_fusion::world {
 /// @throws Error naming `path` and the parser's reason.
 urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path);
 
+/// @throws Error also where the parser reads the rest but leaves out a part, such as a shape that it does not know.
+urdf::ModelInterfaceSharedPtr loadWholeUrdf(const std::string& path);
+
 Eigen::Vector3d toEigen(const urdf::Vector3& vector);
 Eigen::Isometry3d toEigen(const urdf::Pose& pose);
 

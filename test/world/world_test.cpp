@@ -75,6 +75,16 @@ TEST(World, ReadsACounterThatIsTurnedAQuarter) {
   EXPECT_NEAR(area.max_y, 0.6, 1e-4);
 }
 
+TEST(World, RefusesAShapeThatIsUnknownOrHasNoSize) {
+  for (const char* shape : {R"(<capsule radius="0.1" length="0.2"/>)", R"(<box size="0.1 0.1"/>)", "",
+                            R"(<box size="-0.1 0.1 0.1"/>)", R"(<sphere radius="0"/>)"}) {
+    const std::string collision = std::string("<collision><geometry>") + shape + "</geometry></collision>";
+    const std::string error = errorOf([&] { worldWithKitchen(collision); });
+    EXPECT_NE(error.find("kitchen.urdf: "), std::string::npos) << shape << ": " << error;
+    EXPECT_NE(error.find("positive"), std::string::npos) << shape << ": " << error;
+  }
+}
+
 TEST(World, TurnsShapesIntoClosedMeshesOfTheirColour) {
   const auto world = worldWithKitchen(R"(
     <visual><geometry><box size="1 2 3"/></geometry><material name="wood"/></visual>
