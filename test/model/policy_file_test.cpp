@@ -101,8 +101,8 @@ TEST(PolicyFile, NamesWhatIsWrongWithMetadata) {
     const std::string error = loadErrorAfter([&](nn::WeightsFile& file) { file.metadata[key] = value; });
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
-  for (const char* key : {"format", "kind", "channels", "fusion_block", "spatial_grid", "dropout", "image_size", "vocabulary",
-                          "actions", "horizontal_fov_deg"}) {
+  for (const char* key : {"format", "kind", "channels", "fusion_block", "spatial_grid", "dropout", "image_size",
+                          "vocabulary", "actions", "horizontal_fov_deg"}) {
     const std::string error = loadErrorAfter([&](nn::WeightsFile& file) { file.metadata.erase(key); });
     EXPECT_NE(error.find(std::string("metadata '") + key + "' is missing"), std::string::npos) << error;
   }
