@@ -109,18 +109,17 @@ inline model::PolicyOptions policyOptions(const std::string& kind, int channels,
   return options;
 }
 
-/// Operations that the convolutions of one frame need, those of the tiled goal left out: it is a bias.
+/// Operations that the convolutions of one frame need, those of the tiled goal and of the spatial grid left
+/// out: they are biases.
 /// @param requests of the frame: the blocks that a goal reaches are computed for each.
 /// @param passes 1 for inference; 3 in training, of which the first block's input gradient is not needed.
 inline double networkOperations(const model::PolicyOptions& options, int requests, int passes) {
   const std::vector<std::string>& read = model::policyKind(options.kind).options;
   const bool fuses = std::count(read.begin(), read.end(), "fusion_block") > 0;
-  const auto policy = model::makePolicy(options, model::testVocabulary(kItems), 1);
-  const int image_channels = policy->options().spatial_grid == "true" ? 11 : 9;
   double total = 0;
   for (int block = 0; block < 4; ++block) {
     const double pixels = double(kImageSize >> block) * (kImageSize >> block);
-    const int in = block == 0 ? image_channels : options.channels;
+    const int in = block == 0 ? 9 : options.channels;
     const int times = fuses && block > options.fusion_block ? requests : 1;
     total += 2.0 * 9 * in * options.channels * pixels * times * (block == 0 ? std::min(passes, 2) : passes);
   }

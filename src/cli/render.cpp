@@ -32,8 +32,9 @@ struct RenderOptions {
 
 core::OptionSet RenderOptions::options() {
   core::OptionSet set("render");
-  set.addChoice("image", image, {"step", "steps", "episode", "objects"},
-                "one step, all steps in a file each, a sheet of selected steps of the episode, or a sheet of all objects");
+  set.addChoice(
+      "image", image, {"step", "steps", "episode", "objects"},
+      "one step, all steps in a file each, a sheet of selected steps of the episode, or a sheet of all objects");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "seed of the episode");
   set.add("episode", episode, "number of the episode");

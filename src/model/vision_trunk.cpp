@@ -47,7 +47,6 @@ class BlockTrunk : public VisionTrunk {
   };
 
   int pixels() const { return shape_.image_size * shape_.image_size; }
-  int inputChannels() const { return nn::kImageChannels + (shape_.spatial_grid ? nn::kGridChannels : 0); }
 
   // Convolutions and pooled maps of a block. The maps of convolution c are [firstMap(c), firstMap(c + 1)).
   int convolutionCount(const FrameStackBatch& batch, int block) const {
@@ -64,8 +63,7 @@ class BlockTrunk : public VisionTrunk {
   void backwardBlock(int block, const FrameStackBatch& batch, const nn::Matrix& goals, nn::Matrix& dgoals);
   /// The layout of a block's input in predict(). `block` may be one past the last.
   nn::MapLayout predictionLayout(int block) const;
-  void stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) const;
-  void stackOnAllThreads(const core::FrameStack& frames, T* x) const;
+  void stackOnAllThreads(const core::FrameStack& frames, T* x);
   void writeMap(const T* channels_last, float* map) const;
 
   VisionTrunkShape shape_;
@@ -82,15 +80,16 @@ BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& sh
   const std::size_t pixels = this->pixels();
   for (int b = 0; b < kBlocks; ++b) {
     nn::ConvBlockShape block{};
-    block.image_channels = b == 0 ? inputChannels() : shape.channels;
+    block.image_channels = b == 0 ? nn::kImageChannels : shape.channels;
     block.goal_channels = b == fusion_block_ ? shape.fusion->goal_channels : 0;
     block.out_channels = shape.channels;
     block.size = shape.image_size >> b;
     block.input_scale = b == 0 ? nn::kByteScale : 1.f;
+    block.spatial_grid = b == 0 && shape.spatial_grid;
     blocks_.emplace_back(parameters, "block" + std::to_string(b + 1), block, b > 0, threads);
   }
   for (Scratch& scratch : scratch_) {
-    scratch.input.reserve(pixels * std::max(inputChannels(), shape.channels / 4));
+    scratch.input.reserve(pixels * std::max(nn::kImageChannels, shape.channels / 4));
     scratch.output.reserve(pixels / 4 * shape.channels);
     scratch.convolution.reserve(pixels * shape.channels);
   }
@@ -99,7 +98,7 @@ BlockTrunk<T>::BlockTrunk(nn::Parameters& parameters, const VisionTrunkShape& sh
 template <class T>
 const T* BlockTrunk<T>::blockInput(const FrameStackBatch& batch, int block, int convolution, Scratch& scratch) {
   if (block == 0) {
-    stack(batch.frame_stacks[convolution], 0, pixels(), scratch.input.data());
+    nn::stackFrames(batch.frame_stacks[convolution], 0, pixels(), scratch.input.data());
   } else {
     blocks_[block - 1].output(convolution, scratch.input.data());
   }
@@ -181,19 +180,10 @@ nn::MapLayout BlockTrunk<T>::predictionLayout(int block) const {
 }
 
 template <class T>
-void BlockTrunk<T>::stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) const {
-  if (shape_.spatial_grid) {
-    nn::stackFramesWithGrid(frames, shape_.image_size, first_pixel, last_pixel, x);
-  } else {
-    nn::stackFrames(frames, first_pixel, last_pixel, x);
-  }
-}
-
-template <class T>
-void BlockTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) const {
+void BlockTrunk<T>::stackOnAllThreads(const core::FrameStack& frames, T* x) {
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (int part = 0; part < threads_; ++part) {
-    stack(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
+    nn::stackFrames(frames, pixels() * part / threads_, pixels() * (part + 1) / threads_, x);
   }
 }
 
@@ -207,7 +197,7 @@ void BlockTrunk<T>::predict(int thread, const core::FrameStack& frames, const fl
   if (on_all_threads) {
     stackOnAllThreads(frames, in);
   } else {
-    stack(frames, 0, pixels(), in);
+    nn::stackFrames(frames, 0, pixels(), in);
   }
   for (int b = 0; b < kBlocks; ++b) {
     if (on_all_threads) {

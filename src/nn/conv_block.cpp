@@ -18,13 +18,14 @@ ConvBlock<T>::ConvBlock(Parameters& parameters, const std::string& name, const C
                         bool input_gradient, int threads)
     : shape_(shape),
       parameters_(parameters),
-      in_channels_(shape.image_channels + shape.goal_channels),
+      in_channels_(shape.image_channels + (shape.spatial_grid ? kGridChannels : 0) + shape.goal_channels),
       weight_(parameters.addParameter(name + ".conv.weight", {shape.out_channels, in_channels_, 3, 3})),
       bias_(parameters.addParameter(name + ".conv.bias", {shape.out_channels})),
       norm_(parameters, name + ".norm", shape.out_channels),
-      goal_(shape.goal_channels, shape.out_channels),
+      goal_(shape.goal_channels, shape.out_channels, biasSize()),
+      grid_(shape.size, shape.out_channels),
       convolution_({shape.image_channels, shape.out_channels, shape.size, shape.size}, input_gradient, threads),
-      border_bias_(std::size_t(threads) * kBorderCases * shape.out_channels),
+      border_bias_(std::size_t(threads) * biasSize()),
       staging_(std::size_t(shape.out_channels) * shape.image_channels * kTaps) {}
 
 template <class T>
@@ -44,6 +45,7 @@ template <class T>
 void ConvBlock<T>::loadWeights() {
   const float* weights = parameters_.values().data() + weight_;
   goal_.setWeights(weights, in_channels_);
+  if (shape_.spatial_grid) grid_.setWeights(weights, in_channels_, shape_.image_channels);
   const int used = shape_.image_channels * kTaps;
   for (int o = 0; o < shape_.out_channels; ++o) {
     const float* from = weights + std::size_t(o) * in_channels_ * kTaps;
@@ -60,18 +62,23 @@ void ConvBlock<T>::reserve(int images) {
   choices_.reserve(size);
   output_gradients_.reserve(size);
   share_gradients_.reserve(ImageShares(images).count * convolution_.weightsGradientSize());
-  image_gradients_.reserve(border_bias_.size() / (kBorderCases * shape_.out_channels) *
-                           convolution_.weightsGradientSize());
+  image_gradients_.reserve(border_bias_.size() / biasSize() * convolution_.weightsGradientSize());
   norm_.reserve(images);
   goal_.reserve(images);
 }
 
 template <class T>
-void ConvBlock<T>::pool(int thread, int image, const T* y, const float* goal) {
-  float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
-  const std::size_t at = std::size_t(image) * outputSize();
+BorderBias ConvBlock<T>::borderBias(int thread, const float* goal) {
+  float* border_bias = &border_bias_[std::size_t(thread) * biasSize()];
   goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
-  poolForward(mapShape(), y, border_bias, &pooled_[at], &choices_[at], norm_.forwardSums(image));
+  if (shape_.spatial_grid) grid_.forward(border_bias);
+  return {border_bias, shape_.spatial_grid};
+}
+
+template <class T>
+void ConvBlock<T>::pool(int thread, int image, const T* y, const float* goal) {
+  const std::size_t at = std::size_t(image) * outputSize();
+  poolForward(mapShape(), y, borderBias(thread, goal), &pooled_[at], &choices_[at], norm_.forwardSums(image));
 }
 
 template <class T>
@@ -100,8 +107,8 @@ void ConvBlock<T>::beginBackward(int images) {
 template <class T>
 void ConvBlock<T>::unpool(int image, bool add, T* dy) {
   const std::size_t at = std::size_t(image) * outputSize();
-  poolBackward(mapShape(), &output_gradients_[at], &pooled_[at], &choices_[at], norm_gradient_, add, dy,
-               goal_.borderSums(image));
+  poolBackward(mapShape(), &output_gradients_[at], &pooled_[at], &choices_[at], norm_gradient_, shape_.spatial_grid,
+               add, dy, goal_.borderSums(image));
 }
 
 template <class T>
@@ -145,25 +152,27 @@ void ConvBlock<T>::finishBackward(int images, const ImageShares& shares, const M
   writeWeightsGradient(shares.count, threads);
   float* gradients = parameters_.gradients().data();
   goal_.backward(goals, images, in_channels_, gradients + bias_, gradients + weight_, dgoals);
+  if (!shape_.spatial_grid) return;
+  grid_.clearSums();
+  for (int i = 0; i < images; ++i) grid_.addSums(goal_.borderSums(i));
+  grid_.backward(in_channels_, shape_.image_channels, gradients + weight_);
 }
 
 template <class T>
 void ConvBlock<T>::predict(int thread, const T* x, const float* goal, T* y, MapLayout out_layout, T* out) {
-  float* border_bias = &border_bias_[std::size_t(thread) * kBorderCases * shape_.out_channels];
-  goal_.forward(goal, parameters_.values().data() + bias_, border_bias);
   convolution_.predict(thread, x, y);
-  poolNormalise(predictionShape(), y, border_bias, norm_.inferenceScale(), norm_.inferenceShift(), 0, shape_.size / 2,
-                out_layout, out);
+  poolNormalise(predictionShape(), y, borderBias(thread, goal), norm_.inferenceScale(), norm_.inferenceShift(), 0,
+                shape_.size / 2, out_layout, out);
 }
 
 template <class T>
 void ConvBlock<T>::predictOnAllThreads(const T* x, const float* goal, T* y, MapLayout out_layout, T* out, int threads) {
-  goal_.forward(goal, parameters_.values().data() + bias_, border_bias_.data());
+  const BorderBias bias = borderBias(0, goal);
   convolution_.predictOnAllThreads(x, y);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int row = 0; row < shape_.size / 2; ++row) {
-    poolNormalise(predictionShape(), y, border_bias_.data(), norm_.inferenceScale(), norm_.inferenceShift(), row,
-                  row + 1, out_layout, out);
+    poolNormalise(predictionShape(), y, bias, norm_.inferenceScale(), norm_.inferenceShift(), row, row + 1, out_layout,
+                  out);
   }
 }
 

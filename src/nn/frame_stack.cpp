@@ -21,9 +21,9 @@ void store(int difference, bfloat16& number) {
   number.bits = static_cast<std::uint16_t>(bits >> 16);
 }
 
-template <int kChannels, int kCopied, class T>
+template <class T, int kCopied>
 inline void interleavePixel(const T (&rows)[core::kStackedFrames][3 * kRun + 1], int p, T* x) {
-  T* pixel = x + p * kChannels;
+  T* pixel = x + p * kImageChannels;
   for (int f = 0; f < core::kStackedFrames; ++f) {
     std::memcpy(static_cast<void*>(pixel + 3 * f), rows[f] + 3 * p, kCopied * sizeof(T));
   }
@@ -31,15 +31,16 @@ inline void interleavePixel(const T (&rows)[core::kStackedFrames][3 * kRun + 1],
 
 /// Interleaves `count` pixels of three frames, (count, 3) each. A copy moves four numbers, the size of a register. The
 /// next copy overwrites the fourth number, so the last pixel is copied separately.
-template <int kChannels, class T>
+template <class T>
 void interleave(const T (&rows)[core::kStackedFrames][3 * kRun + 1], int count, T* x) {
-  for (int p = 0; p < count - 1; ++p) interleavePixel<kChannels, 4>(rows, p, x);
-  interleavePixel<kChannels, 3>(rows, count - 1, x);
+  for (int p = 0; p < count - 1; ++p) interleavePixel<T, 4>(rows, p, x);
+  interleavePixel<T, 3>(rows, count - 1, x);
 }
 
-/// @tparam kChannels of a pixel of x: the image's come first.
-template <int kChannels, class T>
-void stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) {
+}  // namespace
+
+template <class T>
+void stackFrames(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) {
   T rows[core::kStackedFrames][3 * kRun + 1] = {};
   for (int start = first_pixel; start < last_pixel; start += kRun) {
     const int count = std::min(kRun, last_pixel - start);
@@ -49,33 +50,11 @@ void stack(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x
     for (int f = 1; f < core::kStackedFrames; ++f) {
       for (int i = 0; i < 3 * count; ++i) store(bytes[f - 1][i] - bytes[f][i], rows[f][i]);
     }
-    interleave<kChannels>(rows, count, x + std::size_t(start) * kChannels);
-  }
-}
-
-}  // namespace
-
-template <class T>
-void stackFrames(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x) {
-  stack<kImageChannels>(frames, first_pixel, last_pixel, x);
-}
-
-template <class T>
-void stackFramesWithGrid(const core::FrameStack& frames, int size, int first_pixel, int last_pixel, T* x) {
-  constexpr int kChannels = kImageChannels + kGridChannels;
-  stack<kChannels>(frames, first_pixel, last_pixel, x);
-  const float scale = 1.f / (kByteScale * static_cast<float>(size));
-  const auto coordinate = [&](int at) { return fromFloat<T>(scale * static_cast<float>(2 * at + 1 - size)); };
-  for (int pixel = first_pixel; pixel < last_pixel; ++pixel) {
-    T* grid = x + std::size_t(pixel) * kChannels + kImageChannels;
-    grid[0] = coordinate(pixel % size);
-    grid[1] = coordinate(pixel / size);
+    interleave(rows, count, x + std::size_t(start) * kImageChannels);
   }
 }
 
 template void stackFrames<float>(const core::FrameStack&, int, int, float*);
 template void stackFrames<bfloat16>(const core::FrameStack&, int, int, bfloat16*);
-template void stackFramesWithGrid<float>(const core::FrameStack&, int, int, int, float*);
-template void stackFramesWithGrid<bfloat16>(const core::FrameStack&, int, int, int, bfloat16*);
 
 }  // namespace early_fusion::nn

@@ -9,13 +9,14 @@ constexpr int kTaps = 9;
 /// Whether the tap lies inside the image for a pixel of the border case, along one axis.
 bool reaches(int tap, int border) { return !(border == 0 && tap == 0) && !(border == 2 && tap == 2); }
 
-bool reachesBoth(int tap, int border) { return reaches(tap / 3, border / 3) && reaches(tap % 3, border % 3); }
-
 }  // namespace
 
-TiledGoal::TiledGoal(int goal_channels, int out_channels)
+bool tapReaches(int tap, int border) { return reaches(tap / 3, border / 3) && reaches(tap % 3, border % 3); }
+
+TiledGoal::TiledGoal(int goal_channels, int out_channels, int sums_an_image)
     : goal_channels_(goal_channels),
       out_channels_(out_channels),
+      sums_an_image_(sums_an_image),
       tap_weights_(Matrix::Zero(kTaps * out_channels, goal_channels)),
       border_weights_(Matrix::Zero(kBorderCases * goal_channels, out_channels)) {}
 
@@ -28,7 +29,7 @@ void TiledGoal::setWeights(const float* weights, int in_channels) {
       for (int tap = 0; tap < kTaps; ++tap) tap_weights_(tap * out_channels_ + o, g) = kernel[tap];
       for (int border = 0; border < kBorderCases; ++border) {
         float sum = 0.f;
-        for (int tap = 0; tap < kTaps; ++tap) sum += reachesBoth(tap, border) ? kernel[tap] : 0.f;
+        for (int tap = 0; tap < kTaps; ++tap) sum += tapReaches(tap, border) ? kernel[tap] : 0.f;
         border_weights_(border * goal_channels_ + g, o) = sum;
       }
     }
@@ -45,7 +46,7 @@ void TiledGoal::forward(const float* goal, const float* bias, float* border_bias
 
 void TiledGoal::reserve(int images) {
   if (border_sums_.rows() >= images) return;
-  border_sums_.setZero(images, kBorderCases * out_channels_);
+  border_sums_.setZero(images, sums_an_image_);
   if (goal_channels_ == 0) return;
   tap_sums_.setZero(images, kTaps * out_channels_);
   tap_gradients_.setZero(kTaps * out_channels_, goal_channels_);
@@ -57,7 +58,7 @@ void TiledGoal::sumOverTaps(int images) {
       for (int o = 0; o < out_channels_; ++o) {
         double sum = 0;
         for (int border = 0; border < kBorderCases; ++border) {
-          if (reachesBoth(tap, border)) sum += border_sums_(i, border * out_channels_ + o);
+          if (tapReaches(tap, border)) sum += border_sums_(i, border * out_channels_ + o);
         }
         tap_sums_(i, tap * out_channels_ + o) = static_cast<float>(sum);
       }

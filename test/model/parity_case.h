@@ -25,10 +25,10 @@ constexpr ParityCase kParityCases[] = {{"early_fusion", 16, 0, 32},
                                        {"late_fusion", 16, 1, 32},
                                        {"late_fusion", 32, 1, 48, "true"},
                                        {"attention_map", 16, 1, 32},
-                                       {"attention_map", 32, 1, 48},
+                                       {"attention_map", 48, 1, 48},
                                        {"attention_map", 16, 1, 64, "false"},
                                        {"softmax_attention_map", 16, 1, 32},
-                                       {"softmax_attention_map", 32, 1, 48},
+                                       {"softmax_attention_map", 48, 1, 48},
                                        {"softmax_attention_map", 16, 1, 64, "false"}};
 constexpr int kParityItems = 5;
 

@@ -20,7 +20,7 @@ class ConvBlockTest : public testing::TestWithParam<Case> {
   NaiveConvBlock naive;
 };
 
-TEST_P(ConvBlockTest, IsTheNaiveBlockWithTheGoalConcatenated) {
+TEST_P(ConvBlockTest, IsTheNaiveBlockWithGridAndGoalConcatenated) {
   FastConvBlock<float> fast(naive, true, 2);
   EXPECT_LT(worstError(fast.forward(), naive.forward()), 1e-5);
 }
@@ -84,7 +84,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ConvBlockTest,
                          testing::Values(Case{{9, 0, 16, 16, 1.f / 64}, 3}, Case{{9, 16, 16, 16, 1.f / 64}, 1},
                                          Case{{9, 0, 32, 8, 1.f / 64}, 5}, Case{{16, 16, 16, 8, 1.f}, 7},
                                          Case{{32, 32, 32, 8, 1.f}, 3}, Case{{32, 0, 32, 4, 1.f}, 33},
-                                         Case{{48, 48, 48, 2, 1.f}, 70}, Case{{64, 64, 64, 16, 1.f}, 2}));
+                                         Case{{48, 48, 48, 2, 1.f}, 70}, Case{{64, 64, 64, 16, 1.f}, 2},
+                                         Case{{9, 0, 16, 16, 1.f / 64, true}, 3},
+                                         Case{{9, 16, 32, 8, 1.f / 64, true}, 5}, Case{{64, 0, 64, 16, 1.f, true}, 2}));
 
 }  // namespace
 }  // namespace early_fusion::nn

@@ -50,26 +50,5 @@ TYPED_TEST(FrameStack, InPartsIsTheSameAndLeavesTheOtherPixelsAlone) {
   }
 }
 
-TYPED_TEST(FrameStack, TheSpatialGridFollowsTheImagesChannelsInEveryPart) {
-  constexpr int kSize = 128, kPixels = kSize * kSize, kFirst = 100, kLast = 9001,
-                kBoth = kImageChannels + kGridChannels;
-  std::vector<std::uint8_t> frame(3 * kPixels);
-  for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = static_cast<std::uint8_t>(7 * i + i / 256);
-  const core::FrameStack stack = {frame.data(), nullptr, frame.data()};
-  std::vector<TypeParam> image(kPixels * kImageChannels), both(kPixels * kBoth, fromFloat<TypeParam>(-200.f));
-  stackFrames(stack, 0, kPixels, image.data());
-  stackFramesWithGrid(stack, kSize, kFirst, kLast, both.data());
-  for (int pixel = 0; pixel < kPixels; ++pixel) {
-    for (int c = 0; c < kBoth; ++c) {
-      float expected = -200.f;
-      if (pixel >= kFirst && pixel < kLast) {
-        const int at = c == kImageChannels ? pixel % kSize : pixel / kSize;
-        expected = c < kImageChannels ? toFloat(image[pixel * kImageChannels + c]) : (at - 63.5f) / 64 / kByteScale;
-      }
-      ASSERT_EQ(toFloat(both[pixel * kBoth + c]), expected) << "pixel " << pixel << ", channel " << c;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace early_fusion::nn

@@ -239,8 +239,9 @@ struct Case {
   std::function<std::unique_ptr<LayerCheck>()> make;
 };
 
-ConvBlockShape blockShape(int image_channels, int goal_channels, int out_channels, int size, float input_scale = 1.f) {
-  return {image_channels, goal_channels, out_channels, size, input_scale};
+ConvBlockShape blockShape(int image_channels, int goal_channels, int out_channels, int size, float input_scale = 1.f,
+                          bool spatial_grid = false) {
+  return {image_channels, goal_channels, out_channels, size, input_scale, spatial_grid};
 }
 
 template <class Check = ConvBlockCheck>
@@ -279,22 +280,24 @@ TEST_P(Gradients, AreThoseOfFiniteDifferences) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Layers, Gradients,
-                         testing::Values(Case{"Linear", [] { return std::make_unique<LinearCheck>(); }},
-                                         Case{"Dropout", [] { return std::make_unique<DropoutCheck>(); }},
-                                         Case{"CrossEntropy", [] { return std::make_unique<CrossEntropyCheck>(); }},
-                                         Case{"LinearAttention", attentionPooling(AttentionWeights::kLinear)},
-                                         Case{"SoftmaxAttention", attentionPooling(AttentionWeights::kSoftmax)},
-                                         Case{"ConvBlock", convBlock(blockShape(16, 0, 16, 6), 3)},
-                                         Case{"ConvBlockWithGoal", convBlock(blockShape(16, 4, 16, 6), 3)},
-                                         Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 4, 16, 2), 5)},
-                                         Case{"RenormalisedConvBlock",
-                                              convBlock<RenormalisedCheck>(blockShape(16, 4, 16, 6), 3)},
-                                         Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 3, 32, 4), 1)},
-                                         Case{"FirstConvBlock", convBlock(blockShape(9, 0, 16, 4, 0.25f), 2)},
-                                         Case{"FirstConvBlockWithGrid", convBlock(blockShape(11, 0, 16, 4, 0.25f), 2)},
-                                         Case{"FirstConvBlockWithGoal", convBlock(blockShape(9, 4, 16, 4), 2)}),
-                         [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Layers, Gradients,
+    testing::Values(Case{"Linear", [] { return std::make_unique<LinearCheck>(); }},
+                    Case{"Dropout", [] { return std::make_unique<DropoutCheck>(); }},
+                    Case{"CrossEntropy", [] { return std::make_unique<CrossEntropyCheck>(); }},
+                    Case{"LinearAttention", attentionPooling(AttentionWeights::kLinear)},
+                    Case{"SoftmaxAttention", attentionPooling(AttentionWeights::kSoftmax)},
+                    Case{"ConvBlock", convBlock(blockShape(16, 0, 16, 6), 3)},
+                    Case{"ConvBlockWithGoal", convBlock(blockShape(16, 4, 16, 6), 3)},
+                    Case{"ConvBlockOfTwoPixels", convBlock(blockShape(16, 4, 16, 2), 5)},
+                    Case{"RenormalisedConvBlock", convBlock<RenormalisedCheck>(blockShape(16, 4, 16, 6), 3)},
+                    Case{"ConvBlockOfOneImage", convBlock(blockShape(16, 3, 32, 4), 1)},
+                    Case{"FirstConvBlock", convBlock(blockShape(9, 0, 16, 4, 0.25f), 2)},
+                    Case{"ConvBlockWithGrid", convBlock(blockShape(9, 0, 16, 6, 0.25f, true), 3)},
+                    Case{"ConvBlockWithGridOfTwoPixels", convBlock(blockShape(16, 0, 16, 2, 1.f, true), 5)},
+                    Case{"ConvBlockWithGridAndGoal", convBlock(blockShape(9, 4, 16, 8, 0.25f, true), 2)},
+                    Case{"FirstConvBlockWithGoal", convBlock(blockShape(9, 4, 16, 4), 2)}),
+    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace early_fusion::nn

@@ -15,7 +15,7 @@ TEST(Pooling, ChoosesTheFirstOfEqualNumbers) {
   std::vector<float> z(4 * kLanes);
   std::vector<std::uint8_t> choice(4 * kLanes, 9);
   std::vector<double> sums(2 * kLanes);
-  poolForward(shape, y.data(), bias.data(), z.data(), choice.data(), sums.data());
+  poolForward(shape, y.data(), {bias.data()}, z.data(), choice.data(), sums.data());
   for (std::uint8_t chosen : choice) EXPECT_EQ(chosen, 0);
   for (int c = 0; c < kLanes; ++c) EXPECT_EQ(sums[c], 4);
 }
@@ -28,7 +28,7 @@ TEST(Pooling, AddsEachPixelsOwnBias) {
     std::vector<float> bias(kBorderCases * kLanes, 0.f), x(9 * kLanes);
     for (int c = 0; c < kLanes; ++c) bias[border * kLanes + c] = 1.f + c;
     const std::vector<float> ones(kLanes, 1.f), zeros(kLanes, 0.f);
-    poolNormalise(shape, y.data(), bias.data(), ones.data(), zeros.data(), 0, 3, MapLayout::kChannelsLast, x.data());
+    poolNormalise(shape, y.data(), {bias.data()}, ones.data(), zeros.data(), 0, 3, MapLayout::kChannelsLast, x.data());
     for (int window = 0; window < 9; ++window) {
       bool touched = false;
       for (int q = 0; q < 4; ++q) {
@@ -49,7 +49,7 @@ TEST(Pooling, SumsWhatLeavesTheVarianceExact) {
   std::vector<float> z(32 * 32 * kLanes);
   std::vector<std::uint8_t> choice(z.size());
   std::vector<double> sums(2 * kLanes);
-  poolForward(shape, y_stored.data(), bias.data(), z.data(), choice.data(), sums.data());
+  poolForward(shape, y_stored.data(), {bias.data()}, z.data(), choice.data(), sums.data());
   const double count = 32 * 32;
   for (int c = 0; c < kLanes; ++c) {
     double mean = 0, variance = 0;
@@ -66,7 +66,7 @@ TEST(Pooling, LetsNaNsThrough) {
   std::vector<float> z(4 * kLanes);
   std::vector<std::uint8_t> choice(4 * kLanes);
   std::vector<double> sums(2 * kLanes);
-  poolForward(shape, y.data(), bias.data(), z.data(), choice.data(), sums.data());
+  poolForward(shape, y.data(), {bias.data()}, z.data(), choice.data(), sums.data());
   for (float number : z) EXPECT_TRUE(std::isnan(number));
 }
 
@@ -79,10 +79,10 @@ TEST(Pooling, SendsGradientsBackToTheChosenPixelsOnly) {
   std::vector<float> bias(kBorderCases * channels, 0.f), z(pooled * channels), dy(y.size(), 7.f);
   std::vector<std::uint8_t> choice(pooled * channels);
   std::vector<double> sums(kBorderCases * channels);
-  poolForward(shape, y_stored.data(), bias.data(), z.data(), choice.data(), sums.data());
+  poolForward(shape, y_stored.data(), {bias.data()}, z.data(), choice.data(), sums.data());
   const std::vector<float> ones(channels, 1.f), zeros(channels, 0.f);
   poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, false,
-               dy.data(), sums.data());
+               false, dy.data(), sums.data());
   Numbers border_sums(kBorderCases * channels);
   for (int row = 0; row < 8; ++row) {
     for (int column = 0; column < 6; ++column) {
@@ -98,7 +98,7 @@ TEST(Pooling, SendsGradientsBackToTheChosenPixelsOnly) {
   EXPECT_LT(worstError(sums, border_sums), 1e-6);
 
   const std::vector<float> once = dy;
-  poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, true,
+  poolBackward(shape, dx_stored.data(), z.data(), choice.data(), {ones.data(), zeros.data(), zeros.data()}, false, true,
                dy.data(), sums.data());
   for (std::size_t i = 0; i < dy.size(); ++i) EXPECT_EQ(dy[i], 2 * once[i]);
   EXPECT_LT(worstError(sums, border_sums), 1e-6) << "of what was added alone";

@@ -54,7 +54,8 @@ inline Numbers naivePool(const Numbers& y, const Numbers& bias, int height, int 
   return z;
 }
 
-/// A ConvBlock in double, one plain step after the other: the goal is tiled and concatenated, as the paper has it.
+/// A ConvBlock in double, one plain step after the other: the goal is tiled and concatenated, as the paper has it, and
+/// so are the coordinates.
 struct NaiveConvBlock {
   ConvBlockShape shape;
   int images;
@@ -66,7 +67,7 @@ struct NaiveConvBlock {
 
   NaiveConvBlock(const ConvBlockShape& block_shape, int batch, core::Random& random)
       : shape(block_shape), images(batch) {
-    const int in = shape.image_channels + shape.goal_channels;
+    const int in = inChannels();
     weight = randomNumbers(std::size_t(shape.out_channels) * in * 9, random, -0.3, 0.3);
     bias = randomNumbers(shape.out_channels, random, -1.0, 0.3);  // ReLU must have something to do
     scale = randomNumbers(shape.out_channels, random, 0.5, 1.5);
@@ -76,18 +77,23 @@ struct NaiveConvBlock {
     goals = randomNumbers(std::size_t(images) * shape.goal_channels, random);
   }
 
+  int inChannels() const { return shape.image_channels + (shape.spatial_grid ? 2 : 0) + shape.goal_channels; }
+
   /// What ReLU lets through, (images, size/2, size/2, out).
   Numbers pooled() const {
-    const int in = shape.image_channels + shape.goal_channels, pixels = shape.size * shape.size;
+    const int in = inChannels(), pixels = shape.size * shape.size;
     Numbers all;
     for (int image = 0; image < images; ++image) {
       Numbers concatenated(std::size_t(pixels) * in);
       for (int p = 0; p < pixels; ++p) {
-        for (int i = 0; i < in; ++i) {
-          concatenated[p * in + i] = i < shape.image_channels
-                                         ? shape.input_scale * x[(image * pixels + p) * shape.image_channels + i]
-                                         : goals[image * shape.goal_channels + i - shape.image_channels];
+        double* to = &concatenated[p * in];
+        for (int i = 0; i < shape.image_channels; ++i) {
+          *to++ = shape.input_scale * x[(image * pixels + p) * shape.image_channels + i];
         }
+        if (shape.spatial_grid) {
+          for (const int at : {p % shape.size, p / shape.size}) *to++ = (at + 0.5) / shape.size * 2 - 1;
+        }
+        for (int i = 0; i < shape.goal_channels; ++i) *to++ = goals[image * shape.goal_channels + i];
       }
       const Numbers y = naiveConvolution(concatenated, weight, shape.size, shape.size, in, shape.out_channels);
       const Numbers z = naivePool(y, bias, shape.size, shape.size, shape.out_channels);

@@ -9,16 +9,18 @@
 #include "early_fusion/nn/convolution.h"
 #include "early_fusion/nn/parameters.h"
 #include "early_fusion/nn/pooling.h"
+#include "early_fusion/nn/spatial_grid.h"
 #include "early_fusion/nn/tiled_goal.h"
 
 namespace early_fusion::nn {
 
 struct ConvBlockShape {
-  int image_channels;       ///< of the input maps, without the goal
-  int goal_channels;        ///< 0 if no goal joins
-  int out_channels;         ///< a multiple of kLanes
-  int size;                 ///< edge of the input map [px], even
-  float input_scale = 1.f;  ///< the block computes with input_scale * x
+  int image_channels;         ///< of the input maps, without the goal
+  int goal_channels;          ///< 0 if no goal joins
+  int out_channels;           ///< a multiple of kLanes
+  int size;                   ///< edge of the input map [px], even
+  float input_scale = 1.f;    ///< the block computes with input_scale * x
+  bool spatial_grid = false;  ///< whether coordinates join, as two channels between the image's and the goal's
 };
 
 /// A batch that is divided into shares. Within a share, one thread adds the images' weight gradients in order. The
@@ -39,8 +41,8 @@ struct ImageShares {
 /// over a batch, finishForward() or finishBackward() joins the images' sums. Functions that take `thread` may run at
 /// the same time for different threads and images.
 ///
-/// A tiled goal is a bias to the convolution. Images that differ only in their goal share one convolution, forward and
-/// backward. From the pooling on, each has its own map.
+/// A tiled goal is a bias to the convolution, and so is the spatial grid. Images that differ only in their goal share
+/// one convolution, forward and backward. From the pooling on, each has its own map.
 /// @tparam T float or bfloat16, the element of the maps (H,W,C).
 template <class T>
 class ConvBlock {
@@ -97,6 +99,9 @@ class ConvBlock {
 
  private:
   MapShape predictionShape() const { return {shape_.size, shape_.size, shape_.out_channels, predictionLayout()}; }
+  /// The bias for a goal, in memory of the thread's.
+  BorderBias borderBias(int thread, const float* goal);
+  int biasSize() const { return (shape_.spatial_grid ? 3 : 1) * kBorderCases * shape_.out_channels; }
   void writeWeightsGradient(int shares, int threads);
 
   ConvBlockShape shape_;
@@ -105,13 +110,14 @@ class ConvBlock {
   std::size_t weight_, bias_;
   BatchNorm norm_;
   TiledGoal goal_;
+  SpatialGrid grid_;
   Convolution<T> convolution_;
   NormGradient norm_gradient_{};
 
   AlignedBuffer<T> pooled_;               // (images, size/2, size/2, out)
   AlignedBuffer<std::uint8_t> choices_;   // (images, size/2, size/2, out)
   AlignedBuffer<T> output_gradients_;     // (images, size/2, size/2, out)
-  AlignedBuffer<float> border_bias_;      // (threads, 9, out)
+  AlignedBuffer<float> border_bias_;      // (threads, 9, out), or (threads, 3, 9, out)
   AlignedBuffer<float> staging_;          // (out, image, 3, 3)
   AlignedBuffer<float> share_gradients_;  // (shares, weights in the convolution's layout)
   AlignedBuffer<float> image_gradients_;  // (threads, weights in the convolution's layout)

@@ -25,13 +25,4 @@ inline constexpr float kByteScale = 1.f / 64.f;
 template <class T>
 void stackFrames(const core::FrameStack& frames, int first_pixel, int last_pixel, T* x);
 
-/// Channels of the spatial grid: the column's and the row's coordinate of each pixel's centre, in [-1, 1].
-inline constexpr int kGridChannels = 2;
-
-/// stackFrames() with the spatial grid: x (pixels, kImageChannels + kGridChannels). bfloat16 holds the coordinates
-/// exactly where `size` is a power of two, 256 at most.
-/// @param size edge of the frames [px].
-template <class T>
-void stackFramesWithGrid(const core::FrameStack& frames, int size, int first_pixel, int last_pixel, T* x);
-
 }  // namespace early_fusion::nn

@@ -8,6 +8,9 @@ namespace early_fusion::nn {
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Whether a tap (3 * row + column) of a 3x3 convolution reaches into the map from a pixel of the border case.
+bool tapReaches(int tap, int border);
+
 /// The part of a 3x3 convolution whose input channels are a vector tiled over the map ("early fusion").
 ///
 /// These channels are constant over the map. So their part of the convolution's output is one of nine biases, depending
@@ -15,8 +18,8 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// convolution's own bias is left.
 class TiledGoal {
  public:
-  /// @param goal_channels may be 0.
-  TiledGoal(int goal_channels, int out_channels);
+  /// @param goal_channels may be 0. @param sums_an_image numbers that borderSums() has room for, 9 * out or more.
+  TiledGoal(int goal_channels, int out_channels, int sums_an_image);
 
   /// @param weights of the whole convolution, OIHW (out, in_channels, 3, 3). The goal's channels are the last ones.
   void setWeights(const float* weights, int in_channels);
@@ -26,7 +29,7 @@ class TiledGoal {
 
   void reserve(int images);
 
-  /// The place for the gradient of an image's border_bias, (9,out).
+  /// The place for the gradient of an image's border_bias: (9,out), then what else poolBackward() writes.
   double* borderSums(int image) { return border_sums_.row(image).data(); }
 
   /// Computes dbias (out), the goal's channels of dweights (OIHW as in setWeights()) and dgoals from all border sums.
@@ -38,9 +41,10 @@ class TiledGoal {
 
   int goal_channels_;
   int out_channels_;
+  int sums_an_image_;
   Matrix tap_weights_;     // (9 taps * out, goal)
   Matrix border_weights_;  // (9 cases * goal, out): for each case, the weight from a goal channel to an output
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> border_sums_;  // (images, 9 cases * out)
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> border_sums_;  // (images, sums an image)
   Matrix tap_sums_;                                                                     // (images, 9 taps * out)
   Matrix tap_gradients_;                                                                // as tap_weights_
 };
