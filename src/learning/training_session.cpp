@@ -9,6 +9,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/learning/frame_drawer.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/policy_file.h"
 
@@ -29,6 +30,7 @@ std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
   options.evaluation_episodes = SessionOptions().evaluation_episodes;
+  options.training.window_memory = TrainingOptions().window_memory;
   return options.options().toYaml();
 }
 
@@ -87,7 +89,10 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " px; set both to the same value");
   }
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
-  trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
+  const auto drawer = std::make_shared<FrameDrawer>(world_);
+  trainer_ = std::make_unique<Trainer>(
+      options_.policy, options_.training, world_->objects.vocabulary(), options_.seed,
+      [drawer](const std::vector<FrameOfTrajectory>& frames) { return drawer->draw(frames); });
   std::error_code ignored;  // the first write reports it
   const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
   if (there && !options_.resume) {
@@ -106,7 +111,7 @@ void TrainingSession::resume() {
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }
-  trainer_->restore(file, source, [this](const std::vector<EpisodeActions>& episodes) { return replay(episodes); });
+  trainer_->restore(file, source, [this](const auto& episodes, const auto& finished) { replay(episodes, finished); });
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
   trajectories_before_ = trainer_->trajectoriesSeen();
   curve_ = LearningCurve::parse(file.meta(kCurve, source), source);
@@ -114,7 +119,8 @@ void TrainingSession::resume() {
   resumed_ = true;
 }
 
-std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions>& episodes) const {
+void TrainingSession::replay(const std::vector<EpisodeActions>& episodes,
+                             const std::function<void(Trajectory)>& finished) const {
   std::vector<std::uint64_t> numbers;
   for (const EpisodeActions& episode : episodes) {
     numbers.push_back(episode.episode);
@@ -122,11 +128,15 @@ std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions
     throw core::Error(path(kCheckpoint) + ": has trajectories of " + std::to_string(episode.actions.size()) +
                       " steps, not " + std::to_string(task_.steps) + " as the task; the file is damaged");
   }
-  std::vector<Trajectory> trajectories;
   const std::unique_ptr<Agent> agent = makeReplayAgent(episodes);
-  trainingRunner().run(numbers, *agent, true,
-                       [&](Trajectory trajectory) { trajectories.push_back(std::move(trajectory)); });
-  return trajectories;
+  trainingRunner().run(numbers, *agent, true, finished);
+}
+
+std::unique_ptr<Agent> TrainingSession::rolloutAgent() {
+  const model::ActionChoice exploration = model::actionChoiceFromName(options_.training.exploration);
+  std::unique_ptr<Agent> policy = makePolicyAgent(trainer_->policy(), exploration, options_.seed);
+  if (expertDrive().share == 0) return policy;
+  return makeSharedAgent(std::move(policy), trainingExpert(), expertDrive(), options_.seed);
 }
 
 /// Writes the checkpoint last: if the process dies before that, the round is trained again and writes all files again.
@@ -206,9 +216,8 @@ void TrainingSession::finish(const Evaluation& evaluation) {
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
   RolloutRunner runner = session.trainingRunner();
-  const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
-    const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);
+    const std::unique_ptr<Agent> agent = session.rolloutAgent();
     runner.run(trainer.trajectoriesSeen(), trainer.missingInRound(), *agent, true,
                [&](Trajectory trajectory) { trainer.add(std::move(trajectory)); });
     session.trainRound();

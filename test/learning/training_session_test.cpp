@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
@@ -39,8 +41,7 @@ class TrainingSessionTest : public testing::Test {
   static void runTo(TrainingSession& session, std::uint64_t trajectories) {
     RolloutRunner runner = session.trainingRunner();
     while (session.trainer().trajectoriesSeen() < trajectories) {
-      const model::ActionChoice exploration = model::actionChoiceFromName(session.trainer().options().exploration);
-      const auto agent = makePolicyAgent(session.trainer().policy(), exploration, session.options().seed);
+      const auto agent = session.rolloutAgent();
       runner.run(session.trainer().trajectoriesSeen(), session.trainer().missingInRound(), *agent, true,
                  [&](Trajectory trajectory) { session.trainer().add(std::move(trajectory)); });
       session.trainRound();
@@ -84,7 +85,7 @@ TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
     return *trajectory;
   };
   int crowded = 0;
-  for (const Trajectory& learnt : session.trainer().window()) {
+  for (const Trajectory& learnt : session.trainer().window().trajectories()) {
     EXPECT_EQ(*learnt.steps[0].frame, *played(session.trainingTask(), varied.seed, learnt.episode).steps[0].frame);
     crowded += *learnt.steps[0].frame != *played(session.task(), varied.seed, learnt.episode).steps[0].frame;
   }
@@ -117,6 +118,54 @@ TEST_F(TrainingSessionTest, AnInterruptedSessionOfAnyKindGoesOnBitForBit) {
     EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
     EXPECT_EQ(LearningCurve::parse(core::readFile(folder_ / ("parts_" + kind) / "curve.csv"), "curve").points().size(),
               3u);
+  }
+}
+
+/// Cloning, scheduled sampling and DAgger. All frames of the interrupted session are drawn again.
+TEST_F(TrainingSessionTest, AnInterruptedSessionOfAnyImitationVariantGoesOnBitForBitWithAnyMemory) {
+  std::set<std::string> weights;
+  const auto variants = std::map<std::string, core::GivenOptions>{
+      {"loop", {}},
+      {"cloning", {{"expert_share", "1"}, {"final_expert_share", "1"}}},
+      {"scheduled", {{"expert_share", "1"}, {"expert_share_per", "trajectory"}, {"training_expert", "greedy"}}},
+      {"dagger", {{"expert_share", "0.5"}, {"window", "0"}, {"restart_policy", "true"}}}};
+  for (const auto& [name, given] : variants) {
+    SCOPED_TRACE(name);
+    const auto variant = [&, given = given](const std::string& output, const std::string& memory) {
+      SessionOptions session = options(output);
+      core::OptionSet set = session.options();
+      for (const auto& [option, value] : given) set.set(option, value, "test");
+      set.set("window_memory", memory, "test");
+      return session;
+    };
+    TrainingSession whole(variant("whole_" + name, "500"), world());
+    runSession(whole, [](const Progress&) {});
+    {
+      TrainingSession interrupted(variant("parts_" + name, "0"), world());
+      runTo(interrupted, 6);
+      EXPECT_EQ(interrupted.trainer().window().frameBytes(), 0u);
+    }
+    SessionOptions again = variant("parts_" + name, name == "loop" ? "500" : "0");
+    again.resume = true;
+    TrainingSession resumed(again, world());
+    EXPECT_EQ(resumed.trainer().window().trajectories().size(), name == "dagger" ? 6u : 5u);
+    runSession(resumed, [](const Progress&) {});
+    EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+    const Eigen::VectorXf values = whole.trainer().policy().parameters().values();
+    weights.emplace(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  }
+  EXPECT_EQ(weights.size(), variants.size()) << "every variant trains something else";
+}
+
+TEST_F(TrainingSessionTest, BehaviourClonesFollowTheTrainingExpertAtEveryStep) {
+  SessionOptions cloning = options("cloning");
+  cloning.training.expert_share = cloning.training.final_expert_share = 1;
+  TrainingSession session(cloning, world());
+  runTo(session, 9);
+  for (const Trajectory& trajectory : session.trainer().window().trajectories()) {
+    for (const TrajectoryStep& step : trajectory.steps) {
+      EXPECT_EQ(step.action, step.labelled_requests.front().label.action);
+    }
   }
 }
 

@@ -182,6 +182,26 @@ TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
   EXPECT_FALSE(weights("right") == weights("reference"));
 }
 
+/// The expert drives in the simulator, which knows the state; each round has a new policy and draws frames again.
+TEST_F(SessionTest, ADaggerSessionWithAnExpertThatDrivesTrainsTheWeightsOfTheCommandLine) {
+  const auto session = launchTraining(
+      "dagger", {"options:={expert_share: 0.8, final_expert_share: 0.2, training_expert: searching, window: 0, "
+                 "window_memory: 0, restart_policy: true}"});
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("dagger/result.json")) << session->output();
+  auto here = given("dagger_here");
+  for (const auto& [name, value] : core::GivenOptions{{"expert_share", "0.8"},
+                                                      {"final_expert_share", "0.2"},
+                                                      {"training_expert", "searching"},
+                                                      {"window", "0"},
+                                                      {"restart_policy", "true"}}) {
+    here.emplace_back(name, value);
+  }
+  trainHere(here);
+  EXPECT_TRUE(weights("dagger") == weights("dagger_here"));
+  EXPECT_FALSE(weights("dagger") == weights("reference"));
+}
+
 TEST_F(SessionTest, ASessionThatCannotRunEndsWithTheReason) {
   const auto session = launchTraining("never", {"seed:=lucky"});
   ASSERT_TRUE(session->ends(30)) << session->output();

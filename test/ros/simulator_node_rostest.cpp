@@ -238,6 +238,43 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   EXPECT_EQ(results_[1]->collected, 0u);
 }
 
+TEST_F(SimulatorNodeTest, TheExpertDrivesTheStepsThatAGoalGivesIt) {
+  actionlib::SimpleActionClient<RunEpisodesAction> client(node_, kRunEpisodesAction, false);
+  ASSERT_TRUE(spinUntil([&] { return client.isServerConnected(); }));
+  RunEpisodesGoal goal;
+  goal.task = files_.task();
+  goal.seed = 9;
+  goal.first_episode = 30;
+  goal.episodes = 2;
+  goal.expert_share = 0.5;
+  goal.training_expert = "searching";
+  client.sendGoal(goal);
+  const learning::ExpertDrive drive = expertDrive(goal);
+  int driven = 0;
+  for (std::uint64_t number : {30, 31}) {
+    sim::Episode episode(*world_, {sim::loadTask(files_.task()), 9, number});
+    std::vector<int> pans;
+    for (int step = 0; step < SmallSession::kSteps; ++step) {
+      ASSERT_TRUE(awaitStep(number, step)) << number << " " << step;
+      const sim::EpisodeState& state = episode.state();
+      EXPECT_EQ(scenes_.back()->pan, state.orientation.pan);
+      EXPECT_EQ(scenes_.back()->tilt, state.orientation.tilt);
+      pans.push_back(state.orientation.pan);
+      action_publisher_.publish(answer("TILT_UP"));
+      const bool expert_drives = drive.drives(9, number, step);
+      driven += expert_drives;
+      episode.step(expert_drives
+                       ? expert::searchingLabel(episode.cone(), episode.setup().instances, state.present,
+                                                state.orientation, expert::panDirectionOver(pans), state.request)
+                             .action
+                       : core::Action::kTiltUp);
+    }
+  }
+  ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
+  EXPECT_GT(driven, 0);
+  EXPECT_LT(driven, 2 * SmallSession::kSteps);
+}
+
 TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   actionlib::SimpleActionClient<RunEpisodesAction> client(node_, kRunEpisodesAction, false);
   ASSERT_TRUE(spinUntil([&] { return client.isServerConnected(); }));
@@ -260,6 +297,12 @@ TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
   EXPECT_NE(client.getState().getText().find("max_instances is 4000000000"), std::string::npos);
+  goal.max_instances = 0;
+  goal.expert_share = -1;
+  client.sendGoal(goal);
+  ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
+  EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  EXPECT_NE(client.getState().getText().find("expert_share is -1"), std::string::npos);
 }
 
 TEST_F(SimulatorNodeTest, MarkersShowTheObjectsToWhoLooks) {

@@ -46,7 +46,9 @@ enum RandomStream : std::uint64_t {
   kDropoutStream = 5,       ///< {round, first frame of the batch}: dropout masks
   kRelabelStream = 6,       ///< {episode, step}: the further labelled requests of a frame
   kRandomPolicyStream = 7,  ///< {episode, step}: actions of the random baseline
-  kPersistenceStream = 8    ///< {episode, step}: whether persistent exploration draws a new random number
+  kPersistenceStream = 8,   ///< {episode, step}: whether persistent exploration draws a new random number
+  kDriveStream = 9,         ///< {episode} or {episode, step}: whether the training expert drives
+  kRestartStream = 10       ///< {round}: the seed of the initial weights of a policy that restarts
 };
 
 }  // namespace early_fusion::core

@@ -9,6 +9,7 @@
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/expert/searching_expert.h"
+#include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/goal_policy.h"
@@ -46,6 +47,11 @@ std::unique_ptr<Agent> makeExpertAgent();
 
 /// The searching expert, which knows only what the camera shows.
 std::unique_ptr<Agent> makeSearchingAgent();
+
+/// The training expert at the steps that it drives, and `policy` at the others. `policy` is not asked at the expert's
+/// steps. @param seed of the episodes.
+std::unique_ptr<Agent> makeSharedAgent(std::unique_ptr<Agent> policy, TrainingExpert training_expert,
+                                       const ExpertDrive& drive, std::uint64_t seed);
 
 /// Uniformly random actions: a baseline.
 std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed);

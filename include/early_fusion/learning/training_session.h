@@ -38,6 +38,10 @@ class TrainingSession {
   TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.training_expert); }
   /// Plays training episodes and labels them with the training expert. The session must outlive it.
   RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }
+  /// Who drives the next round's rollouts.
+  ExpertDrive expertDrive() const { return learning::expertDrive(options_.training, trainer_->trajectoriesSeen()); }
+  /// Drives the next round's rollouts. The trainer must outlive the agent, and not train in its life.
+  std::unique_ptr<Agent> rolloutAgent();
   Trainer& trainer() { return *trainer_; }
   const Trainer& trainer() const { return *trainer_; }
 
@@ -63,7 +67,7 @@ class TrainingSession {
 
  private:
   void resume();
-  std::vector<Trajectory> replay(const std::vector<EpisodeActions>& episodes) const;
+  void replay(const std::vector<EpisodeActions>& episodes, const std::function<void(Trajectory)>& finished) const;
   void save() const;
   double elapsedSec() const;
   std::string path(const std::string& name) const;

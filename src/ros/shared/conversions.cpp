@@ -26,6 +26,19 @@ sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
   return {sim::withUpTo(goal.max_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
 }
 
+learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal) {
+  if (!(goal.expert_share >= 0 && goal.expert_share <= 1)) {
+    throw core::Error("expert_share is " + std::to_string(goal.expert_share) + "; it must be in [0, 1]");
+  }
+  if (goal.expert_share_per.empty()) return {goal.expert_share, learning::DriveUnit::kStep};
+  return {goal.expert_share, learning::driveUnitFromName(goal.expert_share_per)};
+}
+
+learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal) {
+  if (goal.training_expert.empty()) return learning::TrainingExpert::kGreedy;
+  return learning::trainingExpertFromName(goal.training_expert);
+}
+
 sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header) {
   const double focal_length = image_size / 2.0 / std::tan(horizontal_fov_deg * M_PI / 360.0);
   const double centre = image_size / 2.0 - 0.5;

@@ -71,7 +71,7 @@ void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory
   publishWeights(plan.mode, plan.goal.seed);
   plan.goal.task = session_->options().task;
   plan.weights = weights_id_;
-  plan.training_expert = session_->trainingExpert();
+  plan.goal.training_expert = session_->options().training.training_expert;
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
@@ -82,6 +82,8 @@ void TrainerNode::rollOut() {
   plan.goal.first_episode = trainer.trajectoriesSeen();
   plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
   plan.goal.max_instances = trainer.options().max_instances;
+  plan.goal.expert_share = session_->expertDrive().share;
+  plan.goal.expert_share_per = trainer.options().expert_share_per;
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "early_fusion/core/image.h"
+#include "early_fusion/learning/expert_drive.h"
+#include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
 #include "early_fusion/world/world.h"
 
@@ -19,6 +21,14 @@ namespace early_fusion::nodes {
 
 /// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
+
+/// Which steps of a goal's episodes the training expert drives.
+/// @throws core::Error naming the field, the value and the allowed values.
+learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal);
+
+/// The expert that labels a goal's episodes, and drives where the goal says so. @throws core::Error naming the known
+/// ones.
+learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
 
 /// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
