@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
 #include "early_fusion/world/world.h"
