@@ -52,9 +52,7 @@ int Trainer::newInRound() const {
 }
 
 double Trainer::learningRate() const {
-  const double done = std::min(1.0, static_cast<double>(trajectories_seen_) / options_.trajectories);
-  const double cosine = 0.5 * (1 + std::cos(M_PI * done));
-  return options_.final_learning_rate + (options_.learning_rate - options_.final_learning_rate) * cosine;
+  return options_.learningRateAt(static_cast<double>(trajectories_seen_) / options_.trajectories);
 }
 
 std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {

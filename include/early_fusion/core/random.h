@@ -46,7 +46,9 @@ enum RandomStream : std::uint64_t {
   kDropoutStream = 5,       ///< {round, first frame of the batch}: dropout masks
   kRelabelStream = 6,       ///< {episode, step}: the further labelled requests of a frame
   kRandomPolicyStream = 7,  ///< {episode, step}: actions of the random baseline
-  kPersistenceStream = 8    ///< {episode, step}: whether persistent exploration draws a new random number
+  kPersistenceStream = 8,   ///< {episode, step}: whether persistent exploration draws a new random number
+  kHeldOutPairsStream = 11, ///< {}: which pairs of items are held out from training
+  kFirstRequestStream = 12  ///< {episode}: the first request of an episode that measures information retention
 };
 
 }  // namespace early_fusion::core

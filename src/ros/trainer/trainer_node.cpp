@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -82,6 +83,7 @@ void TrainerNode::rollOut() {
   plan.goal.first_episode = trainer.trajectoriesSeen();
   plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
   plan.goal.max_instances = trainer.options().max_instances;
+  setPairs(session_->trainingTask(), plan.goal);
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
@@ -115,7 +117,7 @@ void TrainerNode::onRoundTimer() {
 
 void TrainerNode::evaluate() {
   const int episodes = session_->options().evaluation_episodes;
-  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task().name, learning::kHeldOutSeed);
+  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task(), learning::kHeldOutSeed);
   if (episodes == 0) {
     publishWeights("argmax", learning::kHeldOutSeed);
     return finish();

@@ -17,8 +17,11 @@
 
 namespace early_fusion::nodes {
 
-/// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
+/// The first episode of a goal. @throws core::Error as sim::loadTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
+
+/// Sets the requests of a goal's episodes to those of the task.
+void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
 
 /// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
