@@ -61,6 +61,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
       {"render",
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
+      {"retention", {"--run", "--out", "--trajectories", "--evaluate-every", "--evaluation-episodes", "--seed"}},
       {"inspect", {"weights", "--task", "--world"}},
       {"urdf", {"part", "--world"}},
       {"train", {"--task"}}};
@@ -209,6 +210,24 @@ TEST_F(CommandLine, EvaluatesOnThePairsThatTheWeightsHeldOut) {
   const int of_all = requestsWithOne(policy);
   EXPECT_GT(of_all, 0);
   EXPECT_LT(of_all, 12);
+}
+
+TEST_F(CommandLine, MeasuresRetentionAndWritesATable) {
+  core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
+  ASSERT_EQ(run("train --task " + path("tiny.yaml") + " --output " + path("run") +
+                " --trajectories 2 --evaluation-episodes 1 --precision f32"),
+            0)
+      << errors_;
+  const std::string small = " --trajectories 4 --evaluate-every 2 --evaluation-episodes 2";
+  ASSERT_EQ(run("retention --run " + path("run") + small), 0) << errors_;
+  const std::string table = core::readFile(path("run/retention.csv"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
+  EXPECT_NE(table.find("early_fusion,same,2,"), std::string::npos) << table;
+  EXPECT_NE(table.find("early_fusion,other,4,"), std::string::npos) << table;
+  ASSERT_EQ(run("retention --run " + path("run") + small + " --out -"), 0) << errors_;
+  EXPECT_EQ(output_.substr(output_.size() - table.size()), table);
+  EXPECT_NE(run("retention --run " + path("nowhere")), 0);
+  EXPECT_NE(errors_.find(path("nowhere/options.yaml")), std::string::npos) << errors_;
 }
 
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
