@@ -48,7 +48,8 @@ TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
   const std::string error = world::errorOf([] { loadTask("harder"); });
-  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple, three_of_eight) nor")) << error;
+  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple, three_of_eight) nor"))
+      << error;
   EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is neither one of the known tasks"));
 }
 
