@@ -12,6 +12,7 @@ void addTrain(CLI::App& app);
 void addEvaluate(CLI::App& app);
 void addDifficulty(CLI::App& app);
 void addRender(CLI::App& app);
+void addRetention(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);
 

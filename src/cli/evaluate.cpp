@@ -21,12 +21,21 @@ struct EvaluateOptions {
   std::string json;
   std::string trace;
   std::string mode = "argmax";
+  std::string pairs = "all";
+  core::GivenOptions split;  // wins over the weights file's
 };
+
+/// The task with the chosen requests. @param split the split of the weights file.
+sim::Task chosenTask(const EvaluateOptions& options, sim::PairSplit split) {
+  core::OptionSet set = split.options();
+  for (const auto& [name, value] : options.split) set.set(name, value, "command line");
+  return sim::withPairs(options.pairs, split, sim::loadTask(options.task));
+}
 
 void evaluate(const EvaluateOptions& options) {
   const auto world = world::loadWorld(options.world);
-  const sim::Task task = sim::loadTask(options.task);
   NamedAgent named = makeNamedAgent(options.policy, options.mode, options.seed, *world);
+  const sim::Task task = chosenTask(options, named.pairs);
   learning::RolloutRunner runner(*world, task, options.seed);
   std::map<std::uint64_t, std::string> traces;  // by episode, because several episodes are played at the same time
   if (!options.trace.empty()) {
@@ -71,6 +80,13 @@ void addEvaluate(CLI::App& app) {
   command->add_option("--mode", options->mode, "how a weights file's policy chooses actions")
       ->check(CLI::IsMember(model::actionChoiceNames()))
       ->capture_default_str();
+  command
+      ->add_option("--pairs", options->pairs,
+                   "requests of the episodes: all, only those without a held-out pair of items, or only those with\n"
+                   "one; the pairs are those that were held out from the training of the weights file")
+      ->check(CLI::IsMember(sim::pairChoiceNames()))
+      ->capture_default_str();
+  addOptionFlags(*command, sim::PairSplit().options(), options->split);
   command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
   command->callback([options] { evaluate(*options); });
 }

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   early_fusion::cli::addEvaluate(app);
   early_fusion::cli::addDifficulty(app);
   early_fusion::cli::addRender(app);
+  early_fusion::cli::addRetention(app);
   early_fusion::cli::addInspect(app);
   early_fusion::cli::addUrdf(app);
   try {

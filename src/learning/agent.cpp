@@ -8,17 +8,17 @@ namespace early_fusion::learning {
 
 namespace {
 
-class PolicyAgent : public Agent {
+class DecidingAgent : public Agent {
  public:
-  PolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed)
-      : policy_(policy), choice_(choice), seed_(seed) {}
+  DecidingAgent(Decide decide, model::ActionChoice choice, std::uint64_t seed)
+      : decide_(std::move(decide)), choice_(choice), seed_(seed) {}
 
   void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) override {
-    observations_.clear();
+    new_.clear();
     for (const Situation& situation : situations) {
-      if (!situation.repeats) observations_.push_back(situation.observation);
+      if (!situation.repeats) new_.push_back(situation);
     }
-    if (!observations_.empty()) policy_.predict(observations_, probabilities_);
+    if (!new_.empty()) decide_(new_, probabilities_);
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < situations.size(); ++i) {
       Row& probabilities = last_[situations[i].episode];
@@ -31,11 +31,11 @@ class PolicyAgent : public Agent {
   bool needsFrames() const override { return true; }
 
  private:
-  model::GoalPolicy& policy_;
+  Decide decide_;
   model::ActionChoice choice_;
   std::uint64_t seed_;
   using Row = Eigen::Matrix<float, 1, core::kActionCount>;
-  std::vector<model::Observation> observations_;
+  std::vector<Situation> new_;
   model::Probabilities probabilities_;
   std::map<std::uint64_t, Row> last_;  // latest probabilities by episode, because a repeat has the same ones
 };
@@ -104,8 +104,17 @@ std::unique_ptr<Agent> makeTrainingExpert(TrainingExpert training_expert) {
 
 }  // namespace
 
+std::unique_ptr<Agent> makeDecidingAgent(Decide decide, model::ActionChoice choice, std::uint64_t seed) {
+  return std::make_unique<DecidingAgent>(std::move(decide), choice, seed);
+}
+
 std::unique_ptr<Agent> makePolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed) {
-  return std::make_unique<PolicyAgent>(policy, choice, seed);
+  const auto decide = [&policy](const std::vector<Situation>& situations, model::Probabilities& probabilities) {
+    std::vector<model::Observation> observations;
+    for (const Situation& situation : situations) observations.push_back(situation.observation);
+    policy.predict(observations, probabilities);
+  };
+  return makeDecidingAgent(decide, choice, seed);
 }
 
 std::unique_ptr<Agent> makeExpertAgent() { return makeTrainingExpert(TrainingExpert::kGreedy); }

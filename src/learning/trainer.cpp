@@ -55,10 +55,8 @@ int Trainer::newInRound() const {
 
 /// @param round_done the finished share of the round. It matters only if the policy restarts.
 double Trainer::learningRate(double round_done) const {
-  const double session_done = std::min(1.0, static_cast<double>(trajectories_seen_) / options_.trajectories);
-  const double done = options_.restart_policy ? round_done : session_done;
-  const double cosine = 0.5 * (1 + std::cos(M_PI * done));
-  return options_.final_learning_rate + (options_.learning_rate - options_.final_learning_rate) * cosine;
+  const double session_done = static_cast<double>(trajectories_seen_) / options_.trajectories;
+  return options_.learningRateAt(options_.restart_policy ? round_done : session_done);
 }
 
 /// Forgets what the policy has learnt in earlier rounds. The first round's policy is new already.

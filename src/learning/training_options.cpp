@@ -1,5 +1,8 @@
 #include "early_fusion/learning/training_options.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/model/action_choice.h"
@@ -15,6 +18,7 @@ void addRounds(TrainingOptions& options, core::OptionSet& set) {
       "max_instances", options.max_instances, 0, sim::kMaxInstances, "",
       "each training episode draws its number of objects from the task's number to this one; held-out episodes have "
       "the task's number; 0: as the task");
+  set.include(options.pairs.options());
   set.add("trajectories_per_round", options.trajectories_per_round, 1, 100000, "trajectories",
           "new trajectories before the policy is trained on the window");
   set.add("window", options.window, 0, 100000, "trajectories",
@@ -83,6 +87,11 @@ core::OptionSet TrainingOptions::options() {
   addLabelling(*this, set);
   addOptimizer(*this, set);
   return set;
+}
+
+double TrainingOptions::learningRateAt(double done) const {
+  const double cosine = 0.5 * (1 + std::cos(M_PI * std::min(1.0, done)));
+  return final_learning_rate + (learning_rate - final_learning_rate) * cosine;
 }
 
 }  // namespace early_fusion::learning

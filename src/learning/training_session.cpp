@@ -88,6 +88,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " px and the world's is " + std::to_string(world_->options.image_size) +
                       " px; set both to the same value");
   }
+  trainingTask();  // throws if the options do not fit the task
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   const auto drawer = std::make_shared<FrameDrawer>(world_);
   trainer_ = std::make_unique<Trainer>(
@@ -103,6 +104,12 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   } else {
     core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
   }
+}
+
+sim::Task TrainingSession::trainingTask() const {
+  const sim::PairSplit& pairs = options_.training.pairs;
+  return sim::withPairs(pairs.held_out_pairs > 0 ? "trained" : "all", pairs,
+                        sim::withUpTo(options_.training.max_instances, task_));
 }
 
 void TrainingSession::resume() {
@@ -162,12 +169,17 @@ std::string TrainingSession::weightsId() const {
 }
 
 nn::WeightsFile TrainingSession::weights() const {
-  return model::savePolicy(trainer_->policy(), {{"id", weightsId()},
-                                                {"task", task_.name},
-                                                {"preset", options_.preset},
-                                                {"seed", std::to_string(options_.seed)},
-                                                {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
-                                                {"options", learningOptions(options_)}});
+  std::vector<std::pair<std::string, std::string>> metadata = {
+      {"id", weightsId()},
+      {"task", task_.name},
+      {"preset", options_.preset},
+      {"seed", std::to_string(options_.seed)},
+      {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
+      {"options", learningOptions(options_)}};
+  sim::PairSplit pairs = options_.training.pairs;
+  const core::OptionSet set = pairs.options();
+  for (const core::Option& option : set.options()) metadata.emplace_back(option.name, option.get());
+  return model::savePolicy(trainer_->policy(), metadata);
 }
 
 double TrainingSession::elapsedSec() const {
@@ -211,6 +223,16 @@ void TrainingSession::finish(const Evaluation& evaluation) {
                         {"options", options_.options().toYaml()}};
   weights().write(weightsPath());
   core::writeFileAtomically(resultPath(), result.dump(2) + "\n");
+}
+
+sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string& source) {
+  sim::PairSplit pairs;
+  core::OptionSet set = pairs.options();
+  for (const core::Option& option : set.options()) {
+    const auto found = weights.metadata.find(option.name);
+    if (found != weights.metadata.end()) set.set(option.name, found->second, source + ": metadata");
+  }
+  return pairs;
 }
 
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {

@@ -38,7 +38,10 @@ double Trajectory::agreement() const {
 
 TrajectoryRecorder::TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Episode& episode,
                                        TrainingExpert training_expert)
-    : seed_(key.seed), cone_(episode.sharedCone()), training_expert_(training_expert) {
+    : seed_(key.seed),
+      cone_(episode.sharedCone()),
+      held_out_pairs_(episode.heldOutPairs()),
+      training_expert_(training_expert) {
   trajectory_.episode = key.number;
   trajectory_.instances = episode.setup().instances;
 }
@@ -86,9 +89,9 @@ LabelledRequest TrajectoryRecorder::label(const sim::EpisodeState& state, const 
 expert::PanDirection TrajectoryRecorder::panDirection() const { return expert::panDirectionOver(latest_pan_); }
 
 /// Labels the policy's own request, then others that are possible in this scene. Each of these requests 1 to requested_
-/// of the instances that are left. If the frame has not changed, only the policy's own request is labelled: with
-/// another request the policy would have acted differently, and an unchanged frame after COLLECT must always mean that
-/// it failed.
+/// of the instances that are left, and none contains a held-out pair. If the frame has not changed, only the policy's
+/// own request is labelled: with another request the policy would have acted differently, and an unchanged frame after
+/// COLLECT must always mean that it failed.
 /// @param moved whether the frame has changed.
 std::vector<LabelledRequest> TrajectoryRecorder::labelRequests(const sim::EpisodeState& state, bool moved) const {
   constexpr int kDraws = 2 * kMaxRequestsPerFrame;  // some draws repeat a request
@@ -106,7 +109,7 @@ std::vector<LabelledRequest> TrajectoryRecorder::labelRequests(const sim::Episod
     std::sort(request.begin(), request.end());
     const bool known = std::any_of(labelled.begin(), labelled.end(),
                                    [&](const LabelledRequest& other) { return other.request == request; });
-    if (!known) labelled.push_back(label(state, request));
+    if (!known && !held_out_pairs_.areIn(request)) labelled.push_back(label(state, request));
   }
   return labelled;
 }

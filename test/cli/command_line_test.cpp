@@ -54,11 +54,14 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
   const std::pair<std::string, std::vector<std::string>> commands[] = {
-      {"evaluate", {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--world"}},
+      {"evaluate",
+       {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--pairs", "--held-out-pairs",
+        "--held-out-pairs-seed", "--world"}},
       {"difficulty", {"--task", "--episodes", "--seed", "--world"}},
       {"render",
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
+      {"retention", {"--run", "--out", "--trajectories", "--evaluate-every", "--evaluation-episodes", "--seed"}},
       {"inspect", {"weights", "--task", "--world"}},
       {"urdf", {"part", "--world"}},
       {"train", {"--task"}}};
@@ -179,6 +182,54 @@ TEST_F(CommandLine, TrainsResumesInspectsAndEvaluatesWhatItTrained) {
       << errors_;
 }
 
+TEST_F(CommandLine, EvaluatesOnThePairsThatTheWeightsHeldOut) {
+  core::writeFileAtomically(path("two.yaml"), "{instances: 5, requested: 2, steps: 3}");
+  const std::string task = " --task " + path("two.yaml");
+  ASSERT_EQ(
+      run("train" + task + " --output " + path("run") +
+          " --trajectories 2 --evaluation-episodes 1 --precision f32 --held-out-pairs 0.5 --held-out-pairs-seed 7"),
+      0)
+      << errors_;
+  const sim::HeldOutPairs held_out(16, {0.5, 7});
+  const core::Vocabulary vocabulary = world::loadWorld("")->objects.vocabulary();
+  const auto requestsWithOne = [&](const std::string& arguments) {
+    EXPECT_EQ(run("evaluate --episodes 12 --trace -" + task + arguments), 0) << errors_;
+    std::istringstream lines(output_);
+    int with_one = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const auto step = nlohmann::json::parse(line);
+      if (step["step"] != 0) continue;
+      with_one += held_out.areIn(vocabulary.request(step["request"].get<std::vector<std::string>>()));
+    }
+    return with_one;
+  };
+  const std::string policy = " --policy " + path("run/weights.safetensors");
+  EXPECT_EQ(requestsWithOne(policy + " --pairs held_out"), 12);
+  EXPECT_EQ(requestsWithOne(policy + " --pairs trained"), 0);
+  EXPECT_EQ(requestsWithOne(" --policy expert --pairs held_out --held-out-pairs 0.5 --held-out-pairs-seed 7"), 12);
+  const int of_all = requestsWithOne(policy);
+  EXPECT_GT(of_all, 0);
+  EXPECT_LT(of_all, 12);
+}
+
+TEST_F(CommandLine, MeasuresRetentionAndWritesATable) {
+  core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
+  ASSERT_EQ(run("train --task " + path("tiny.yaml") + " --output " + path("run") +
+                " --trajectories 2 --evaluation-episodes 1 --precision f32"),
+            0)
+      << errors_;
+  const std::string small = " --trajectories 4 --evaluate-every 2 --evaluation-episodes 2";
+  ASSERT_EQ(run("retention --run " + path("run") + small), 0) << errors_;
+  const std::string table = core::readFile(path("run/retention.csv"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
+  EXPECT_NE(table.find("early_fusion,same,2,"), std::string::npos) << table;
+  EXPECT_NE(table.find("early_fusion,other,4,"), std::string::npos) << table;
+  ASSERT_EQ(run("retention --run " + path("run") + small + " --out -"), 0) << errors_;
+  EXPECT_EQ(output_.substr(output_.size() - table.size()), table);
+  EXPECT_NE(run("retention --run " + path("nowhere")), 0);
+  EXPECT_NE(errors_.find(path("nowhere/options.yaml")), std::string::npos) << errors_;
+}
+
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
   const std::pair<std::string, std::string> mistakes[] = {
       {"train --output " + path("r") + " --channels 20", "channels"},
@@ -192,6 +243,8 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
        "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
       {"evaluate --policy expert --episodes 0", "episodes"},
+      {"evaluate --policy expert --task medium --pairs held_out", "held_out_pairs is 0"},
+      {"evaluate --policy expert --pairs some", "some"},
       {"difficulty --task simple harder", "harder"},
       {"difficulty --episodes 0", "episodes"},
       {"difficulty --world /no/such/world.yaml", "/no/such/world.yaml"},

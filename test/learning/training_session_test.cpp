@@ -10,6 +10,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/learning/training_samples.h"
 #include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::learning {
@@ -93,6 +94,55 @@ TEST_F(TrainingSessionTest, LearnsFromScenesOfManySizesAndIsScoredOnTheTasks) {
   for (const EpisodeOutcome& outcome : evaluation.outcomes) {
     EXPECT_EQ(outcome.agreement, played(session.task(), kHeldOutSeed, outcome.episode).agreement());
   }
+}
+
+/// Goes through every sample of a round: of the policy's own requests, of the further ones, and after failed COLLECTs.
+TEST_F(TrainingSessionTest, NoSampleOfARoundHasAHeldOutPair) {
+  core::writeFileAtomically(folder_ / "pairs.yaml", "{instances: 8, requested: 2, steps: 12}");
+  int with_held_out = 0, of_pairs = 0, samples = 0;
+  for (const char* share : {"0", "0.5"}) {
+    const SessionOptions pairs = resolveSessionOptions({{"task", folder_ / "pairs.yaml"},
+                                                        {"output", folder_ / share},
+                                                        {"precision", "f32"},
+                                                        {"requests_per_frame", "8"},
+                                                        {"held_out_pairs", share}},
+                                                       "test");
+    TrainingSession session(pairs, world());
+    const sim::HeldOutPairs held_out(world()->objects.size(), {0.5, 1});
+    const auto agent = makePolicyAgent(session.trainer().policy(), model::ActionChoice::kSample, 1);
+    with_held_out = of_pairs = samples = 0;
+    session.trainingRunner().run(0, 20, *agent, true, [&](const Trajectory& trajectory) {
+      for (std::size_t step = 0; step < trajectory.steps.size(); ++step) {
+        for (const model::Sample& sample : samplesOf(trajectory, step, pairs.training, ClassWeights{})) {
+          with_held_out += held_out.areIn(*sample.observation.request);
+          of_pairs += sample.observation.request->size() == 2;
+          EXPECT_LE(sample.observation.request->size(), 2u) << "no request of three items is trained";
+          ++samples;
+        }
+      }
+    });
+    if (std::string(share) == "0") EXPECT_GT(with_held_out, 100);
+  }
+  EXPECT_EQ(with_held_out, 0);
+  EXPECT_GT(of_pairs, 100);
+  EXPECT_GT(samples, 20 * 12 * 2);
+}
+
+TEST_F(TrainingSessionTest, WeightsSayWhichPairsWereHeldOut) {
+  core::writeFileAtomically(folder_ / "pairs.yaml", "{instances: 4, requested: 2, steps: 4}");
+  SessionOptions pairs = options("a");
+  pairs.task = folder_ / "pairs.yaml";
+  pairs.training.pairs = {0.25, 9};
+  TrainingSession session(pairs, world());
+  const sim::PairSplit split = heldOutPairsOf(session.weights(), "test");
+  EXPECT_EQ(split.held_out_pairs, 0.25);
+  EXPECT_EQ(split.held_out_pairs_seed, 9u);
+  EXPECT_EQ(session.trainingTask().pairs, sim::PairChoice::kTrained);
+  EXPECT_EQ(session.task().pairs, sim::PairChoice::kAll);
+  EXPECT_EQ(heldOutPairsOf(nn::WeightsFile(), "old").held_out_pairs, 0);
+  pairs.task = folder_ / "short.yaml";
+  pairs.output = folder_ / "b";
+  EXPECT_THROW(TrainingSession(pairs, world()), core::Error) << "it requests one instance";
 }
 
 TEST_F(TrainingSessionTest, AnInterruptedSessionOfAnyKindGoesOnBitForBit) {

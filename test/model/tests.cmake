@@ -11,6 +11,7 @@ early_fusion_add_test(model policy_options_test)
 early_fusion_add_test(model request_encoder_test)
 early_fusion_add_test(model saliency_test)
 early_fusion_add_test(model sample_batch_test)
+early_fusion_add_test(model second_branch_test)
 early_fusion_add_test(model vision_trunk_test)
 
 # The second implementation that the network is checked against.

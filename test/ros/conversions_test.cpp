@@ -96,6 +96,22 @@ TEST_F(ConversionsTest, AGoalNamesItsFirstEpisode) {
   EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("max_instances is 4000000000"), std::string::npos);
 }
 
+TEST_F(ConversionsTest, AGoalNamesTheRequestsOfItsEpisodes) {
+  RunEpisodesGoal goal;
+  goal.task = "hard";
+  EXPECT_EQ(firstEpisode(goal).task.pairs, sim::PairChoice::kAll);
+  setPairs(sim::withPairs("held_out", {0.25, 4}, sim::loadTask("hard")), goal);
+  const sim::Task task = firstEpisode(goal).task;
+  EXPECT_EQ(task.pairs, sim::PairChoice::kHeldOut);
+  EXPECT_EQ(task.pair_split.held_out_pairs, 0.25);
+  EXPECT_EQ(task.pair_split.held_out_pairs_seed, 4u);
+  goal.held_out_pairs = 2;
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("held_out_pairs: '2' is out of range"), std::string::npos);
+  goal.held_out_pairs = 0.5;
+  goal.pairs = "some";
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("'some'"), std::string::npos);
+}
+
 TEST_F(ConversionsTest, AScenesFieldsNameItsEpisode) {
   EXPECT_EQ(scene().task, "hard");
   EXPECT_EQ(scene().seed, 5u);

@@ -47,22 +47,23 @@ TEST_P(NodeParameters, AMistakeIsNamedAndTheNodeEnds) {
 
 INSTANTIATE_TEST_SUITE_P(
     Nodes, NodeParameters,
-    testing::Values(Case{"simulator_node", {"_rate:=-3"}, {"rate", "-3", "[0, 10000] Hz"}},
-                    Case{"simulator_node", {"_free_run:=perhaps"}, {"free_run", "perhaps", "true | false"}},
-                    Case{"simulator_node", {"_tusk:=hard"}, {"tusk", "unknown", "task"}},
-                    Case{"simulator_node", {"_task:=impossible"}, {"impossible", "hard, medium, simple"}},
-                    Case{"simulator_node", {"_world:=/nowhere.yaml"}, {"/nowhere.yaml"}},
-                    Case{"policy_node", {"_weights:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
-                    Case{"policy_node", {"_mode:=guess"}, {"mode", "guess", "argmax | sample"}},
-                    Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
-                    Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_chanels:=32"}, {"'chanels'", "known are", "channels"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
-                    Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
-                    Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
-                    Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
-                    Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
+    testing::Values(
+        Case{"simulator_node", {"_rate:=-3"}, {"rate", "-3", "[0, 10000] Hz"}},
+        Case{"simulator_node", {"_free_run:=perhaps"}, {"free_run", "perhaps", "true | false"}},
+        Case{"simulator_node", {"_tusk:=hard"}, {"tusk", "unknown", "task"}},
+        Case{"simulator_node", {"_task:=impossible"}, {"impossible", "hard, medium, simple, three_of_eight"}},
+        Case{"simulator_node", {"_world:=/nowhere.yaml"}, {"/nowhere.yaml"}},
+        Case{"policy_node", {"_weights:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
+        Case{"policy_node", {"_mode:=guess"}, {"mode", "guess", "argmax | sample"}},
+        Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
+        Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_chanels:=32"}, {"'chanels'", "known are", "channels"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
+        Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
+        Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
+        Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
+        Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
 
 TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
   ::ros::init(::ros::M_string(), "node_parameters");

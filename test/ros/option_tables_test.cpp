@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "early_fusion/core/file.h"
+#include "early_fusion/learning/retention.h"
 #include "early_fusion/learning/session_options.h"
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
@@ -125,6 +126,11 @@ TEST(OptionTables, TrainingHasTheValuesOfThePresets) {
   }
 }
 
+TEST(OptionTables, RetentionHasEveryOptionOfAMeasurement) {
+  const Table table = tablesIn(document("retention.md"));
+  for (const core::Option& option : optionsOf<learning::RetentionOptions>()) expectRows(table, option);
+}
+
 TEST(OptionTables, ExtendingHasEveryKeyOfATaskAndOfAWorld) {
   const Table task = tablesIn(section(document("extending.md"), "## A task"));
   for (const core::Option& option : optionsOf<sim::Task>()) expectRows(task, option);
@@ -161,8 +167,8 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
   for (const auto& options :
        {optionsOf<SimulatorNode::Options>(), optionsOf<PolicyNode::Options>(), optionsOf<TrainerNode::Options>(),
         optionsOf<EvaluatorNode::Options>(), optionsOf<SessionMonitorNode::Options>(),
-        optionsOf<RequestNode::Options>(), optionsOf<PanTiltDriverNode::Options>(), optionsOf<sim::Task>(),
-        optionsOf<world::WorldOptions>()}) {
+        optionsOf<RequestNode::Options>(), optionsOf<learning::RetentionOptions>(),
+        optionsOf<PanTiltDriverNode::Options>(), optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }
   for (const core::Option& option : all) {

@@ -221,9 +221,9 @@ TEST_F(SessionTest, ARunFolderIsNotOverwrittenUnlessResumed) {
 
 TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
   const std::string path = files_->path("reference/weights.safetensors");
-  const auto launched = launch(
-      "evaluate.launch", {"weights:=" + path, "task:=" + files_->task(), "episodes:=5", "world:=" + files_->world(),
-                          "precision:=f32", "result:=" + files_->path("scores.json")});
+  const auto launched = launch("evaluate.launch", {"weights:=" + path, "task:=" + files_->task(), "episodes:=5",
+                                                   "world:=" + files_->world(), "precision:=f32", "pairs:=held_out",
+                                                   "held_out_pairs:=0.5", "result:=" + files_->path("scores.json")});
   ASSERT_TRUE(launched->ends(kSessionSec)) << launched->output();
   ASSERT_TRUE(exists("scores.json")) << launched->output();
   EXPECT_NE(launched->output().find("agreement"), std::string::npos);
@@ -231,11 +231,13 @@ TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
   const auto world = world::loadWorld(files_->world());
   const auto policy = model::loadPolicy(nn::WeightsFile::read(path), path, "f32");
   const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kArgmax, learning::kHeldOutSeed);
-  learning::RolloutRunner runner(*world, sim::loadTask(files_->task()), learning::kHeldOutSeed);
+  const sim::Task task = sim::withPairs("held_out", {0.5, 1}, sim::loadTask(files_->task()));
+  learning::RolloutRunner runner(*world, task, learning::kHeldOutSeed);
   const auto expected = nlohmann::json::parse(learning::evaluate(runner, *agent, 5, path).toJson());
   const auto scores = nlohmann::json::parse(core::readFile(files_->path("scores.json")));
   EXPECT_EQ(scores["per_episode"], expected["per_episode"]);
   EXPECT_EQ(scores["f1"], expected["f1"]);
+  EXPECT_EQ(scores["pairs"], "held_out");
 }
 
 TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {

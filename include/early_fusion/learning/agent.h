@@ -39,6 +39,13 @@ class Agent {
   virtual bool needsFrames() const { return false; }
 };
 
+/// Computes the probabilities of the actions in several situations, (situations, 7), rows sum to 1.
+using Decide = std::function<void(const std::vector<Situation>& situations, model::Probabilities& probabilities)>;
+
+/// Chooses actions from probabilities. A repeat has the probabilities of the previous step. @param seed decides drawn
+/// actions.
+std::unique_ptr<Agent> makeDecidingAgent(Decide decide, model::ActionChoice choice, std::uint64_t seed);
+
 /// A trained policy. @param seed decides drawn actions. `policy` must outlive the agent.
 std::unique_ptr<Agent> makePolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed);
 

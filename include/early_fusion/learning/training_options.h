@@ -3,6 +3,7 @@
 #include <string>
 
 #include "early_fusion/core/options.h"
+#include "early_fusion/sim/held_out_pairs.h"
 
 namespace early_fusion::learning {
 
@@ -12,6 +13,7 @@ struct TrainingOptions {
   // The trajectories, and how often each is trained on.
   int trajectories = 20000;         ///< length of the session
   int max_instances = 0;            ///< maximum number of objects in training episodes; see sim::withUpTo()
+  sim::PairSplit pairs;             ///< pairs of items that no training request contains
   int trajectories_per_round = 50;  ///< new trajectories before a round trains on the window
   int window = 150;                 ///< the number of most recent trajectories that a round trains on; 0: all so far
   int window_memory = 500;          ///< memory for the window's frames [MB]; the others are drawn again when needed
@@ -43,6 +45,8 @@ struct TrainingOptions {
   double weight_ema = 0;              ///< decay a training step of the weights' moving average, which acts; 0: none
 
   core::OptionSet options();
+  /// Adam's rate. @param done the finished share of the session; 1 afterwards.
+  double learningRateAt(double done) const;
 };
 
 }  // namespace early_fusion::learning

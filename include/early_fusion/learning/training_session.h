@@ -25,16 +25,16 @@ namespace early_fusion::learning {
 class TrainingSession {
  public:
   /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.
-  /// @throws Error if the folder has another session, if the checkpoint has other options or is damaged, or if the seed
-  /// is that of the held-out episodes.
+  /// @throws Error if the folder has another session, if the checkpoint has other options or is damaged, if the seed is
+  /// that of the held-out episodes, or if the task has no pairs to hold out.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
   const SessionOptions& options() const { return options_; }
   const world::World& world() const { return *world_; }
   /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
-  /// The task of the training episodes.
-  sim::Task trainingTask() const { return sim::withUpTo(options_.training.max_instances, task_); }
+  /// The task of the training episodes: with up to max_instances objects, and without held-out pairs.
+  sim::Task trainingTask() const;
   TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.training_expert); }
   /// Plays training episodes and labels them with the training expert. The session must outlive it.
   RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }
@@ -82,6 +82,10 @@ class TrainingSession {
   std::uint64_t trajectories_before_ = 0;  // in earlier runs of the session
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
+
+/// The pairs of items that were held out from the training of these weights. @param source names the file in errors.
+/// @throws Error naming a value that is not allowed.
+sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string& source);
 
 /// Runs a session to its end in this process: rollouts, training, evaluation on held-out episodes.
 /// @param report called after every round and during the final evaluation.

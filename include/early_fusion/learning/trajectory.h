@@ -109,6 +109,7 @@ class TrajectoryRecorder {
 
   std::uint64_t seed_;
   std::shared_ptr<const sim::ConeTable> cone_;
+  sim::HeldOutPairs held_out_pairs_;
   TrainingExpert training_expert_;
   int requested_ = 0;            // instances requested at step 0
   std::vector<int> latest_pan_;  // pan [steps] of the last kStackedFrames frames, the oldest first

@@ -23,7 +23,15 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
 }
 
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
-  return {sim::withUpTo(goal.max_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
+  const sim::Task task = sim::withUpTo(goal.max_instances, sim::loadTask(goal.task));
+  const std::string pairs = goal.pairs.empty() ? "all" : goal.pairs;
+  return {sim::withPairs(pairs, {goal.held_out_pairs, goal.held_out_pairs_seed}, task), goal.seed, goal.first_episode};
+}
+
+void setPairs(const sim::Task& task, RunEpisodesGoal& goal) {
+  goal.pairs = sim::pairChoiceName(task.pairs);
+  goal.held_out_pairs = task.pair_split.held_out_pairs;
+  goal.held_out_pairs_seed = task.pair_split.held_out_pairs_seed;
 }
 
 learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal) {

@@ -42,8 +42,9 @@ void RolloutRecorder::begin(const Scene& scene) {
   if (start.instances != episode.setup().instances || !sameState(start.state, episode.state())) {
     throw core::Error(
         stepName(scene) + ": is not the episode of task '" + key.task.name + "', seed " + std::to_string(key.seed) +
-        ", with up to " + std::to_string(key.task.maxInstances()) +
-        " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
+        ", with up to " + std::to_string(key.task.maxInstances()) + " objects, and with " +
+        sim::pairChoiceName(key.task.pairs) +
+        " pairs; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
   learning::TrajectoryRecorder recorder(key, episode, training_expert_);
   recording_.emplace(Recording{key, std::move(episode), std::move(recorder), ::ros::Time(), ""});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -84,6 +85,7 @@ void TrainerNode::rollOut() {
   plan.goal.max_instances = trainer.options().max_instances;
   plan.goal.expert_share = session_->expertDrive().share;
   plan.goal.expert_share_per = trainer.options().expert_share_per;
+  setPairs(session_->trainingTask(), plan.goal);
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
@@ -117,7 +119,7 @@ void TrainerNode::onRoundTimer() {
 
 void TrainerNode::evaluate() {
   const int episodes = session_->options().evaluation_episodes;
-  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task().name, learning::kHeldOutSeed);
+  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task(), learning::kHeldOutSeed);
   if (episodes == 0) {
     publishWeights("argmax", learning::kHeldOutSeed);
     return finish();

@@ -19,7 +19,7 @@
 
 namespace early_fusion::nodes {
 
-/// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
+/// The first episode of a goal. @throws core::Error as sim::loadTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
 /// Which steps of a goal's episodes the training expert drives.
@@ -29,6 +29,8 @@ learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal);
 /// The expert that labels a goal's episodes, and drives where the goal says so. @throws core::Error naming the known
 /// ones.
 learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
+/// Sets the requests of a goal's episodes to those of the task.
+void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
 
 /// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);
