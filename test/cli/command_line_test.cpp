@@ -61,6 +61,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
         "--out"}},
       {"inspect", {"weights", "--task", "--world"}},
       {"urdf", {"part", "--world"}},
+      {"experiment", {"file", "--output", "--jobs", "--list", "--collect"}},
       {"train", {"--task"}}};
   for (const auto& [command, arguments] : commands) {
     EXPECT_EQ(run("--help"), 0);
