@@ -2,23 +2,31 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <iostream>
 
 #include "early_fusion/core/file.h"
 
 namespace early_fusion::cli {
 
+void addCommands(CLI::App& app) {
+  addTrain(app);
+  addEvaluate(app);
+  addExperiment(app);
+  addDifficulty(app);
+  addRender(app);
+  addRetention(app);
+  addInspect(app);
+  addUrdf(app);
+}
+
 void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given) {
   for (const core::Option& option : set.options()) {
-    std::string flag = "--" + option.name;
-    std::replace(flag.begin(), flag.end(), '_', '-');
     const std::string unit = option.unit.empty() ? "" : " " + option.unit;
     const std::string group = "Options of the " + set.title();
     if (option.isSwitch()) {
       command
           .add_flag_function(
-              flag,
+              option.flag(),
               [&given, name = option.name](std::int64_t count) {
                 given.emplace_back(name, count > 0 ? "true" : "false");
               },
@@ -28,7 +36,7 @@ void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOp
     }
     command
         .add_option_function<std::string>(
-            flag, [&given, name = option.name](const std::string& value) { given.emplace_back(name, value); },
+            option.flag(), [&given, name = option.name](const std::string& value) { given.emplace_back(name, value); },
             option.help + ". " + option.range + unit)
         ->type_name("")
         ->default_str(option.initial)

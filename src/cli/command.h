@@ -15,6 +15,10 @@ void addRender(CLI::App& app);
 void addRetention(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);
+void addExperiment(CLI::App& app);
+
+/// Declares all subcommands.
+void addCommands(CLI::App& app);
 
 /// Declares a flag for every option of `set`, such as "--learning-rate" for learning_rate. The given values are added
 /// to `given`, which must outlive the app.

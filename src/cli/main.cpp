@@ -9,13 +9,7 @@ int main(int argc, char** argv) {
       "(Walsman et al., \"Early Fusion for Goal Directed Robotic Vision\", IROS 2019), without ROS.");
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  early_fusion::cli::addTrain(app);
-  early_fusion::cli::addEvaluate(app);
-  early_fusion::cli::addDifficulty(app);
-  early_fusion::cli::addRender(app);
-  early_fusion::cli::addRetention(app);
-  early_fusion::cli::addInspect(app);
-  early_fusion::cli::addUrdf(app);
+  early_fusion::cli::addCommands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -37,6 +37,12 @@ std::string position(const YAML::Node& node, const std::string& file) {
 
 }  // namespace
 
+std::string Option::flag() const {
+  std::string flag = "--" + name;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
 void OptionSet::add(const std::string& name, int& field, int low, int high, const std::string& unit,
                     const std::string& help) {
   addMultiple(name, field, 1, low, high, unit, help);

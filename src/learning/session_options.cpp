@@ -14,7 +14,9 @@ core::OptionSet SessionOptions::options() {
   set.add("output", output, "run folder for the checkpoint, the weights, the learning curve and the result");
   set.add("resume", resume, "continue from the run folder's checkpoint if there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
-          "number of held-out episodes for the final score");
+          "number of held-out episodes for a score");
+  set.add("score_every", score_every, 0, 100000000, "trajectories",
+          "the policy is also scored whenever it has seen this many more; 0: only at the end");
   set.include(policy.options());
   set.include(training.options());
   return set;

@@ -18,6 +18,7 @@ namespace early_fusion::learning {
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
+constexpr char kScores[] = "scores.csv";
 // Keys of a checkpoint's metadata.
 constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
 constexpr char kTask[] = "session.task";        // sim::Task as YAML
@@ -31,6 +32,7 @@ std::string learningOptions(SessionOptions options) {
   options.resume = false;
   options.evaluation_episodes = SessionOptions().evaluation_episodes;
   options.training.window_memory = TrainingOptions().window_memory;
+  options.score_every = SessionOptions().score_every;
   return options.options().toYaml();
 }
 
@@ -74,21 +76,34 @@ double parseSeconds(const std::string& text, const std::string& source) {
   return seconds;
 }
 
+/// The task of the training episodes. @throws Error if the options do not fit the task.
+sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
+  return sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
+                        sim::withUpTo(options.max_instances, std::move(task)));
+}
+
 }  // namespace
+
+void checkSession(const SessionOptions& options, const world::World& world) {
+  if (options.seed == kHeldOutSeed) {
+    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
+                      " is the seed of the held-out episodes; choose another");
+  }
+  if (options.policy.image_size != world.options.image_size) {
+    throw core::Error("image_size: the policy's is " + std::to_string(options.policy.image_size) +
+                      " px and the world's is " + std::to_string(world.options.image_size) +
+                      " px; set both to the same value");
+  }
+  if (options.score_every > 0 && options.evaluation_episodes == 0) {
+    throw core::Error("score_every: a score needs episodes, but evaluation_episodes is 0; set both or neither");
+  }
+  trainingTaskOf(options.training, sim::loadTask(options.task));
+}
 
 TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
-  if (options_.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
-  if (options_.policy.image_size != world_->options.image_size) {
-    throw core::Error("image_size: the policy's is " + std::to_string(options_.policy.image_size) +
-                      " px and the world's is " + std::to_string(world_->options.image_size) +
-                      " px; set both to the same value");
-  }
-  trainingTask();  // throws if the options do not fit the task
+  checkSession(options_, *world_);
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   const auto drawer = std::make_shared<FrameDrawer>(world_);
   trainer_ = std::make_unique<Trainer>(
@@ -106,11 +121,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   }
 }
 
-sim::Task TrainingSession::trainingTask() const {
-  const sim::PairSplit& pairs = options_.training.pairs;
-  return sim::withPairs(pairs.held_out_pairs > 0 ? "trained" : "all", pairs,
-                        sim::withUpTo(options_.training.max_instances, task_));
-}
+sim::Task TrainingSession::trainingTask() const { return trainingTaskOf(options_.training, task_); }
 
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
@@ -122,6 +133,10 @@ void TrainingSession::resume() {
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
   trajectories_before_ = trainer_->trajectoriesSeen();
   curve_ = LearningCurve::parse(file.meta(kCurve, source), source);
+  if (std::filesystem::exists(path(kScores))) {
+    scores_ = ScoreCurve::parse(core::readFile(path(kScores)), path(kScores));
+    scores_.cutAfter(trajectories_before_);
+  }
   started_ = std::chrono::steady_clock::now();
   resumed_ = true;
 }
@@ -162,6 +177,21 @@ RoundStatistics TrainingSession::trainRound(const std::function<void(double)>& p
   curve_.add({round, elapsedSec()});
   save();
   return round;
+}
+
+bool TrainingSession::scoreDue() const {
+  if (options_.score_every == 0) return false;
+  const auto every = static_cast<std::uint64_t>(options_.score_every);
+  const std::uint64_t scored = scores_.points().empty() ? 0 : scores_.points().back().trajectories;
+  return trainer_->trajectoriesSeen() / every > scored / every;
+}
+
+void TrainingSession::addScore(const Evaluation& evaluation) {
+  const double trained_sec = curve_.points().empty() ? 0 : curve_.points().back().elapsed_sec;
+  started_ += std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(elapsedSec() - trained_sec));
+  scores_.add(trainer_->trajectoriesSeen(), trained_sec / 60, evaluation);
+  core::writeFileAtomically(path(kScores), scores_.toCsv());
 }
 
 std::string TrainingSession::weightsId() const {
@@ -215,6 +245,7 @@ std::string TrainingSession::weightsPath() const { return path("weights.safetens
 std::string TrainingSession::resultPath() const { return path("result.json"); }
 
 void TrainingSession::finish(const Evaluation& evaluation) {
+  if (!evaluation.outcomes.empty()) addScore(evaluation);
   auto result = nlohmann::ordered_json::parse(evaluation.toJson());
   result["policy"] = weightsPath();
   result["weights_id"] = weightsId();
@@ -238,22 +269,25 @@ sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string&
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
   Trainer& trainer = session.trainer();
   RolloutRunner runner = session.trainingRunner();
+  const auto score = [&] {
+    RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
+    const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
+    return evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
+      Progress progress = session.progress();
+      progress.stage = "evaluation";
+      progress.evaluated = done;
+      report(progress);
+    });
+  };
   while (!trainer.finished()) {
+    if (session.scoreDue()) session.addScore(score());
     const std::unique_ptr<Agent> agent = session.rolloutAgent();
     runner.run(trainer.trajectoriesSeen(), trainer.missingInRound(), *agent, true,
                [&](Trajectory trajectory) { trainer.add(std::move(trajectory)); });
     session.trainRound();
     report(session.progress());
   }
-  RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
-  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
-  const Evaluation evaluation =
-      evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
-        Progress progress = session.progress();
-        progress.stage = "evaluation";
-        progress.evaluated = done;
-        report(progress);
-      });
+  const Evaluation evaluation = score();
   session.finish(evaluation);
   return evaluation;
 }

@@ -64,6 +64,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
       {"retention", {"--run", "--out", "--trajectories", "--evaluate-every", "--evaluation-episodes", "--seed"}},
       {"inspect", {"weights", "--task", "--world"}},
       {"urdf", {"part", "--world"}},
+      {"experiment", {"file", "--output", "--jobs", "--list", "--collect"}},
       {"train", {"--task"}}};
   for (const auto& [command, arguments] : commands) {
     EXPECT_EQ(run("--help"), 0);

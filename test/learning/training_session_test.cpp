@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
@@ -47,6 +48,11 @@ class TrainingSessionTest : public testing::Test {
                  [&](Trajectory trajectory) { session.trainer().add(std::move(trajectory)); });
       session.trainRound();
     }
+  }
+
+  std::vector<ScorePoint> scoresOf(const std::string& output) const {
+    const std::string file = folder_ / output / "scores.csv";
+    return ScoreCurve::parse(core::readFile(file), file).points();
   }
 
   const fs::path folder_ = fs::temp_directory_path() / ("early_fusion_session_test" + std::to_string(::getpid()));
@@ -216,6 +222,90 @@ TEST_F(TrainingSessionTest, BehaviourClonesFollowTheTrainingExpertAtEveryStep) {
     for (const TrajectoryStep& step : trajectory.steps) {
       EXPECT_EQ(step.action, step.labelled_requests.front().label.action);
     }
+TEST_F(TrainingSessionTest, ScoresOnTheWayAndLearnsTheSame) {
+  TrainingSession plain(options("plain"), world());
+  runSession(plain, [](const Progress&) {});
+  SessionOptions often = options("often");
+  often.score_every = 4;  // rounds end at 3, 6 and 9
+  TrainingSession scored(often, world());
+  const Evaluation last = runSession(scored, [](const Progress&) {});
+  EXPECT_TRUE(core::readFile(plain.weightsPath()) == core::readFile(scored.weightsPath()));
+  const auto scores = scoresOf("often");
+  ASSERT_EQ(scores.size(), 2u);
+  EXPECT_EQ(scores[0].trajectories, 6u);
+  EXPECT_EQ(scores[1].trajectories, 9u);
+  EXPECT_NEAR(scores[1].agreement, last.agreement(), 1e-6);
+  EXPECT_EQ(scoresOf("plain").size(), 1u);
+  EXPECT_EQ(scoresOf("plain")[0].agreement, scores[1].agreement);
+  // The score on the way is that of a session that ends there with the same weights.
+  TrainingSession half(options("half"), world());
+  runTo(half, 6);
+  RolloutRunner held_out(*world(), half.task(), kHeldOutSeed);
+  const auto agent = makePolicyAgent(half.trainer().policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
+  EXPECT_NEAR(evaluate(held_out, *agent, 2, "half").agreement(), scores[0].agreement, 1e-6);
+}
+
+TEST_F(TrainingSessionTest, MinutesAreThoseOfTrainingWithoutScoring) {
+  SessionOptions often = options("often");
+  often.score_every = 3;
+  const auto started = std::chrono::steady_clock::now();
+  TrainingSession session(often, world());
+  runSession(session, [](const Progress& progress) {
+    if (progress.stage == "evaluation") std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  });
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const LearningCurve curve = LearningCurve::parse(core::readFile(folder_ / "often" / "curve.csv"), "curve");
+  const auto scores = scoresOf("often");
+  ASSERT_EQ(scores.size(), 3u);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(60 * scores[i].minutes, curve.points()[i].elapsed_sec, 0.05);
+  const auto result = nlohmann::json::parse(core::readFile(session.resultPath()));
+  EXPECT_LT(result["training"]["elapsed_sec"].get<double>(), passed - 3 * 2 * 0.3) << "three scorings of two episodes";
+}
+
+TEST_F(TrainingSessionTest, AResumedSessionScoresWhatIsMissingAndKeepsTheRest) {
+  SessionOptions often = options("often");
+  often.score_every = 3;
+  {
+    TrainingSession whole(often, world());
+    runSession(whole, [](const Progress&) {});
+  }
+  SessionOptions parts = options("parts");
+  parts.score_every = 3;
+  {
+    TrainingSession killed(parts, world());
+    runTo(killed, 6);  // without the scores of 3 and of 6
+  }
+  // A score of a round that the checkpoint does not have.
+  core::writeFileAtomically(folder_ / "parts" / "scores.csv",
+                            "trajectories,minutes,f1,precision,recall,agreement\n3,1,0.25,0,0,0\n9,1,0.75,0,0,0\n");
+  parts.resume = true;
+  TrainingSession resumed(parts, world());
+  EXPECT_TRUE(resumed.scoreDue());
+  runSession(resumed, [](const Progress&) {});
+  const auto scores = scoresOf("parts"), expected = scoresOf("often");
+  ASSERT_EQ(scores.size(), 3u);
+  EXPECT_EQ(scores[0].f1, 0.25);
+  for (int i : {1, 2}) {
+    EXPECT_EQ(scores[i].trajectories, expected[i].trajectories);
+    EXPECT_EQ(scores[i].f1, expected[i].f1);
+    EXPECT_EQ(scores[i].agreement, expected[i].agreement);
+  }
+}
+
+TEST_F(TrainingSessionTest, ScoresNeedEpisodesAndOneOfNoneIsNotWritten) {
+  SessionOptions none = options("none");
+  none.evaluation_episodes = 0;
+  {
+    TrainingSession session(none, world());
+    runSession(session, [](const Progress&) {});
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "none" / "scores.csv"));
+  none.score_every = 3;
+  try {
+    checkSession(none, *world());
+    FAIL() << "accepted";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("evaluation_episodes"), std::string::npos) << error.what();
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "early_fusion/core/error.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -26,7 +26,7 @@ class ConversionsTest : public testing::Test {
     return sceneState(scene, world_->objects.vocabulary(), world_->rig.lattice());
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   const sim::EpisodeKey key_{sim::loadTask("hard"), 5, 9};
   sim::Episode episode_{*world_, key_};

@@ -17,7 +17,7 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -141,7 +141,7 @@ class Launch : public testing::Test {
     return files_.path(name);
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
 };
 
 TEST_F(Launch, TrainReachesEveryOptionOfTrainingThroughOptions) {

@@ -18,7 +18,7 @@
 #include "early_fusion/ros/policy/acting_policy.h"
 #include "early_fusion/ros/shared/camera_image.h"
 #include "early_fusion/ros/shared/topics.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 #include "spin_until.h"
 
 namespace early_fusion::nodes {
@@ -100,7 +100,7 @@ class PolicyNodeTest : public testing::Test {
   std::vector<ActionConstPtr> actions_;
   PolicyStatusConstPtr status_;
   nn::WeightsFile file_;
-  const SmallSession files_;
+  const learning::SmallSession files_;
 };
 
 TEST_F(PolicyNodeTest, AnswersWithTheImagesStampAndTheNetworksProbabilities) {

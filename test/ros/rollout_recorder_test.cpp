@@ -7,7 +7,7 @@
 #include "early_fusion/learning/rollout.h"
 #include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/shared/conversions.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -94,10 +94,10 @@ class RolloutRecorderTest : public testing::Test {
     return "";
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   sim::Task task_ = sim::loadTask(files_.task());
-  render::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
+  render::Rasterizer rasterizer_{*world_, learning::SmallSession::kImageSize};
   RolloutPlan plan_;
   std::unique_ptr<RolloutRecorder> recorder_;
   std::uint32_t stamp_ = 1;

@@ -15,7 +15,7 @@
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
 #include "early_fusion/model/policy_file.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -49,7 +49,7 @@ bool waitFor(const std::function<bool()>& condition, double timeout_sec = 30) {
 class SessionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    files_ = new SmallSession();
+    files_ = new learning::SmallSession();
     trainHere(given("reference"));
   }
   static void TearDownTestSuite() { delete files_; }
@@ -59,7 +59,7 @@ class SessionTest : public testing::Test {
             {"world", files_->world()},
             {"preset", files_->preset()},
             {"output", files_->path(output)},
-            {"evaluation_episodes", std::to_string(SmallSession::kEvaluationEpisodes)}};
+            {"evaluation_episodes", std::to_string(learning::SmallSession::kEvaluationEpisodes)}};
   }
 
   static void trainHere(const std::vector<std::pair<std::string, std::string>>& given_options) {
@@ -112,13 +112,13 @@ class SessionTest : public testing::Test {
     return processesWith({node + "_node", "__log:=" + files_->path("ros_home/log")});
   }
 
-  static SmallSession* files_;
+  static learning::SmallSession* files_;
   ChildProcess::Environment environment_;
   std::optional<ChildProcess> master_;
   int launches_ = 0;
 };
 
-SmallSession* SessionTest::files_ = nullptr;
+learning::SmallSession* SessionTest::files_ = nullptr;
 
 TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
   const auto session = launchTraining("run");
@@ -129,7 +129,7 @@ TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
   EXPECT_EQ(one["per_episode"], other["per_episode"]);
   EXPECT_EQ(one["weights_id"], other["weights_id"]);
   // A line for each round, with what a person wants to know.
-  const std::string total = std::to_string(SmallSession::kTrajectories);
+  const std::string total = std::to_string(learning::SmallSession::kTrajectories);
   EXPECT_NE(session->output().find("2/" + total), std::string::npos) << session->output();
   EXPECT_NE(session->output().find(total + "/" + total + " (100%)"), std::string::npos) << session->output();
 }
@@ -164,6 +164,22 @@ TEST_F(SessionTest, AnyNumberOfWorkersTrainsTheSameWeights) {
     ASSERT_TRUE(exists("workers" + workers + "/result.json")) << session->output();
     EXPECT_TRUE(weights("workers" + workers) == weights("reference"));
   }
+}
+
+TEST_F(SessionTest, ScoresOnTheWayAsTheCommandLineDoes) {
+  auto scored = given("scored_here");
+  scored.emplace_back("score_every", "3");
+  trainHere(scored);
+  const auto session = launchTraining("scored", {"options:={score_every: 3}"});
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("scored/result.json")) << session->output();
+  EXPECT_TRUE(weights("scored") == weights("reference"));
+  const auto scores = [](const std::string& output) {
+    const std::string file = files_->path(output + "/scores.csv");
+    return std::regex_replace(core::readFile(file), std::regex(R"((\n\d+,)[^,]*)"), "$1");  // without the minutes
+  };
+  EXPECT_EQ(scores("scored"), scores("scored_here"));
+  EXPECT_EQ(result("scored")["per_episode"], result("reference")["per_episode"]);
 }
 
 TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {

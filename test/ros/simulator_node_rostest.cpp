@@ -15,7 +15,7 @@
 #include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 #include "spin_until.h"
 
 namespace early_fusion::nodes {
@@ -90,7 +90,7 @@ class SimulatorNodeTest : public testing::Test {
   std::map<::ros::Time, sensor_msgs::JointStateConstPtr> joints_;
   std::vector<EpisodeResultConstPtr> results_;
   std::string message_;
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld("");
 };
 
@@ -220,7 +220,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   goal.episodes = 2;
   client.sendGoal(goal);
   for (std::uint64_t episode : {20, 21}) {
-    for (int step = 0; step < SmallSession::kSteps; ++step) {
+    for (int step = 0; step < learning::SmallSession::kSteps; ++step) {
       ASSERT_TRUE(awaitStep(episode, step)) << episode << " " << step;
       EXPECT_FALSE(reset(1, 1)) << "a goal is being played";
       const sim::Task task = sim::withUpTo(6, sim::loadTask(files_.task()));
@@ -234,7 +234,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   EXPECT_EQ(results_[0]->episode, 20u);
   EXPECT_EQ(results_[1]->episode, 21u);
   EXPECT_EQ(results_[1]->task, "short");
-  EXPECT_EQ(results_[1]->steps, static_cast<std::uint32_t>(SmallSession::kSteps));
+  EXPECT_EQ(results_[1]->steps, static_cast<std::uint32_t>(learning::SmallSession::kSteps));
   EXPECT_EQ(results_[1]->collected, 0u);
 }
 

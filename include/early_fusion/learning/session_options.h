@@ -18,6 +18,7 @@ struct SessionOptions {
   std::string output;   ///< run folder for the checkpoint, the weights, the learning curve and the result
   bool resume = false;  ///< continue from the run folder's checkpoint if there is one
   int evaluation_episodes = 500;
+  int score_every = 0;  ///< trajectories between two scores on the way; 0: none
   model::PolicyOptions policy;
   TrainingOptions training;
 

@@ -10,6 +10,7 @@
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/learning_curve.h"
 #include "early_fusion/learning/progress.h"
+#include "early_fusion/learning/score_curve.h"
 #include "early_fusion/learning/session_options.h"
 #include "early_fusion/learning/trainer.h"
 #include "early_fusion/sim/task.h"
@@ -17,16 +18,21 @@
 
 namespace early_fusion::learning {
 
+/// Checks what the options' own ranges cannot say.
+/// @throws Error naming the option, if the seed is that of the held-out episodes, or if options do not fit each other
+/// or the world.
+void checkSession(const SessionOptions& options, const world::World& world);
+
 /// A training session from the first trajectory to the final score: the trainer with its run folder, learning curve and
 /// clock.
 ///
 /// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the current policy),
-/// curve.csv, options.yaml and, at the end, result.json.
+/// curve.csv, scores.csv, options.yaml and, at the end, result.json.
 class TrainingSession {
  public:
   /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.
-  /// @throws Error if the folder has another session, if the checkpoint has other options or is damaged, if the seed is
-  /// that of the held-out episodes, or if the task has no pairs to hold out.
+  /// @throws Error as checkSession() does, and if the folder has another session or if the checkpoint has other options
+  /// or is damaged.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
   const SessionOptions& options() const { return options_; }
@@ -51,6 +57,12 @@ class TrainingSession {
   /// Trains a round that is due, and writes the weights, the curve and the checkpoint.
   RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
 
+  /// Whether the current policy has to be scored before the session goes on; see SessionOptions::score_every.
+  bool scoreDue() const;
+
+  /// Writes a score of the current policy to scores.csv. The time since the last round does not count as training.
+  void addScore(const Evaluation& evaluation);
+
   /// Names the current weights: "simple-seed1-1250".
   std::string weightsId() const;
 
@@ -62,7 +74,8 @@ class TrainingSession {
   std::string weightsPath() const;
   std::string resultPath() const;
 
-  /// Writes weights.safetensors, and result.json with the evaluation, the options and the elapsed time.
+  /// Adds the final score, and writes weights.safetensors, and result.json with the evaluation, the options and the
+  /// elapsed time. @param evaluation may be empty.
   void finish(const Evaluation& evaluation);
 
  private:
@@ -77,6 +90,7 @@ class TrainingSession {
   sim::Task task_;
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;
+  ScoreCurve scores_;
   bool resumed_ = false;
   double elapsed_before_sec_ = 0;          // in earlier runs of the session
   std::uint64_t trajectories_before_ = 0;  // in earlier runs of the session
@@ -88,7 +102,7 @@ class TrainingSession {
 sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string& source);
 
 /// Runs a session to its end in this process: rollouts, training, evaluation on held-out episodes.
-/// @param report called after every round and during the final evaluation.
+/// @param report called after every round and after every held-out episode.
 Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report);
 
 }  // namespace early_fusion::learning

@@ -53,7 +53,7 @@ TrainerNode::~TrainerNode() {
   if (round_.valid()) round_.wait();
 }
 
-void TrainerNode::goOn() { session_->trainer().finished() ? evaluate() : rollOut(); }
+void TrainerNode::goOn() { session_->trainer().finished() || session_->scoreDue() ? evaluate() : rollOut(); }
 
 void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
   const std::string bytes = session_->weights().serialize();
@@ -131,8 +131,15 @@ void TrainerNode::evaluate() {
   RolloutPlan plan;
   plan.goal.seed = learning::kHeldOutSeed;
   plan.goal.episodes = static_cast<std::uint32_t>(episodes);
-  play(plan, keep, [this] { finish(); });
+  play(plan, keep, [this] { scored(); });
   enterStage("evaluation");
+}
+
+void TrainerNode::scored() {
+  if (session_->trainer().finished()) return finish();
+  ROS_INFO("score: %s", evaluation_.summary().c_str());
+  session_->addScore(evaluation_);
+  goOn();
 }
 
 void TrainerNode::finish() {

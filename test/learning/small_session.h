@@ -7,7 +7,7 @@
 
 #include "early_fusion/core/file.h"
 
-namespace early_fusion::nodes {
+namespace early_fusion::learning {
 
 /// Files of a world, a task and a preset so small that a whole session takes seconds; removed with the object.
 class SmallSession {
@@ -43,7 +43,7 @@ class SmallSession {
   void write(const std::string& name, const std::string& text) { core::writeFileAtomically(path(name), text); }
 
   const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("early_fusion_ros_test" + std::to_string(::getpid()));
+      std::filesystem::temp_directory_path() / ("early_fusion_small_session" + std::to_string(::getpid()));
 };
 
-}  // namespace early_fusion::nodes
+}  // namespace early_fusion::learning
