@@ -60,7 +60,8 @@ TEST(CellFolder, ACellOfOtherOptionsIsAnError) {
 TEST(CellFolder, AnOptionThatTheCellDoesNotSayHasItsDefault) {
   const SmallExperiment small;
   const auto withoutLine = [&](const std::string& key) {
-    std::string text = small.experiment.cells[2].session.options().toYaml();
+    learning::SessionOptions session = small.experiment.cells[2].session;
+    std::string text = session.options().toYaml();
     const std::size_t begin = text.find("\n" + key + ":") + 1;
     return text.erase(begin, text.find('\n', begin) + 1 - begin);
   };
