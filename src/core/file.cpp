@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
@@ -116,7 +117,7 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
     if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  throw Error("'" + name_or_file + "' is neither one of the known " + folder + " (" + joined(known) +
+  throw Error("'" + excerpt(name_or_file) + "' is neither one of the known " + folder + " (" + joined(known) +
               ") nor a .yaml file");
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/policy_file.h"
@@ -55,11 +56,11 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
   all.insert(now.begin(), now.end());
   const auto value = [](const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
-    return found == settings.end() ? "(absent)" : "'" + found->second + "'";
+    return found == settings.end() ? "(absent)" : "'" + core::excerpt(found->second) + "'";
   };
   for (const auto& [name, unused] : all) {
     if (value(before, name) == value(now, name)) continue;
-    throw core::Error(source + ": the session was started with " + name + " = " + value(before, name) + ", not " +
+    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) + ", not " +
                       value(now, name) + "; resume it with the same settings, or choose another output folder");
   }
 }
@@ -103,6 +104,11 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
   const nn::WeightsFile file = nn::WeightsFile::read(source);
+  if (!file.has_digest) {
+    throw core::Error(source +
+                      ": has no digest, so damage could not be seen; it is damaged, or an earlier version wrote it; "
+                      "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
+  }
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }

@@ -59,7 +59,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
       {"render",
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
-      {"inspect", {"weights", "--task", "--world"}},
+      {"inspect", {"weights", "--task", "--world", "--rewrite"}},
       {"urdf", {"part", "--world"}},
       {"train", {"--task"}}};
   for (const auto& [command, arguments] : commands) {
@@ -179,6 +179,22 @@ TEST_F(CommandLine, TrainsResumesInspectsAndEvaluatesWhatItTrained) {
       << errors_;
 }
 
+TEST_F(CommandLine, InspectRefusesADamagedFileAndAddsADigestToAForeignOne) {
+  const std::string shipped = core::shareFolder() + "/models/simple.safetensors";
+  ASSERT_EQ(run("inspect " + shipped), 0) << errors_;
+  EXPECT_EQ(output_.rfind("digest: right\n", 0), 0u) << output_;
+  std::string bytes = core::readFile(shipped);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+  core::writeFileAtomically(path("damaged.safetensors"), bytes);
+  EXPECT_EQ(run("inspect " + path("damaged.safetensors")), 1);
+  EXPECT_NE(errors_.find("damaged.safetensors: the file is damaged"), std::string::npos) << errors_;
+  EXPECT_EQ(output_, "");
+  core::writeFileAtomically(path("foreign.safetensors"), std::string("\2\0\0\0\0\0\0\0{}", 10));
+  ASSERT_EQ(run("inspect " + path("foreign.safetensors") + " --rewrite " + path("new.safetensors")), 0) << errors_;
+  EXPECT_EQ(output_.rfind("digest: none", 0), 0u) << output_;
+  EXPECT_TRUE(nn::WeightsFile::read(path("new.safetensors")).has_digest);
+}
+
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
   const std::pair<std::string, std::string> mistakes[] = {
       {"train --output " + path("r") + " --channels 20", "channels"},
@@ -191,6 +207,10 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"render --size 1008 --out " + path("x.png"),
        "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
+      {"inspect", "At least 1 option from [weights"},
+      {"inspect --task simple --rewrite " + path("x.safetensors"), "--rewrite requires weights"},
+      {"inspect --task simple --world", "--task excludes --world"},
+      {"inspect " + core::shareFolder() + "/config/world.yaml", "world.yaml: not a safetensors file, but a text"},
       {"evaluate --policy expert --episodes 0", "episodes"},
       {"difficulty --task simple harder", "harder"},
       {"difficulty --episodes 0", "episodes"},

@@ -1,4 +1,6 @@
 early_fusion_add_test(core action_test)
+early_fusion_add_test(core digest_test)
+early_fusion_add_test(core excerpt_test)
 early_fusion_add_test(core file_test)
 early_fusion_add_test(core frame_stack_test)
 early_fusion_add_test(core names_test)
