@@ -19,8 +19,8 @@ void addUrdf(CLI::App& app);
 /// to `given`, which must outlive the app.
 void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given);
 
-/// Writes to the file, or to standard output if it is "-".
-void writeTo(const std::string& file, const std::string& text);
+/// The command that was given, for a user to type again: "early_fusion train --task hard --output 'my runs'".
+std::string commandLine(const std::string& command, const core::GivenOptions& given, const core::OptionSet& set);
 
 /// Whether standard error is a terminal, where a line can be overwritten.
 bool onTerminal();

@@ -151,9 +151,9 @@ void OptionSet::setFromYaml(const YAML::Node& map, const std::string& file) {
 
 YAML::Node loadYamlFile(const std::string& file) {
   try {
-    return YAML::Load(readFile(file));
+    return namingOutOfMemory(file, [&] { return YAML::Load(readFile(file, kMaxTextBytes)); });
   } catch (const YAML::Exception& error) {
-    throw Error(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + error.msg);
+    throw Error(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + excerpt(error.msg));
   }
 }
 

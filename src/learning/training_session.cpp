@@ -12,12 +12,18 @@
 #include "early_fusion/core/file.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/vision_trunk.h"
 
 namespace early_fusion::learning {
 
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
+constexpr char kCurveFile[] = "curve.csv";
+constexpr char kOptionsFile[] = "options.yaml";
+constexpr char kWeights[] = "weights.safetensors";
+constexpr char kResult[] = "result.json";
+constexpr std::array kFiles = {kCheckpoint, kCurveFile, kOptionsFile, kWeights, kResult};
 // Keys of a checkpoint's metadata.
 constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
 constexpr char kTask[] = "session.task";        // sim::Task as YAML
@@ -60,8 +66,12 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
   };
   for (const auto& [name, unused] : all) {
     if (value(before, name) == value(now, name)) continue;
-    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) + ", not " +
-                      value(now, name) + "; resume it with the same settings, or choose another output folder");
+    const std::string advice =
+        name == "precision" ? "; set precision to " + value(before, name) +
+                                  " to go on in that arithmetic on this processor, or choose another output folder"
+                            : "; resume it with the same settings, or choose another output folder";
+    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) +
+                      ", not " + value(now, name) + advice);
   }
 }
 
@@ -88,6 +98,9 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
                       " px; set both to the same value");
   }
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
+  options_.policy.precision = model::resolvedPrecision(options_.policy.precision);
+  lock_ = std::make_unique<core::FolderLock>(options_.output);
+  for (const char* name : kFiles) core::removeTemporaryFiles(path(name));
   trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
   std::error_code ignored;  // the first write reports it
   const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
@@ -97,7 +110,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   if (there) {
     resume();
   } else {
-    core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
+    core::writeFileAtomically(path(kOptionsFile), options_.options().toYaml());
   }
 }
 
@@ -137,8 +150,9 @@ std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions
 
 /// Writes the checkpoint last: if the process dies before that, the round is trained again and writes all files again.
 void TrainingSession::save() const {
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
+  core::writeFileAtomically(path(kCurveFile), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) file.metadata[key] = yaml;
   file.metadata[kElapsed] = std::to_string(elapsedSec());
@@ -191,12 +205,16 @@ Progress TrainingSession::progress() const {
   return progress;
 }
 
+std::uint64_t TrainingSession::trajectoriesSaved() const {
+  return curve_.points().empty() ? 0 : curve_.points().back().round.trajectories;
+}
+
 std::string TrainingSession::path(const std::string& name) const {
   return (std::filesystem::path(options_.output) / name).string();
 }
 
-std::string TrainingSession::weightsPath() const { return path("weights.safetensors"); }
-std::string TrainingSession::resultPath() const { return path("result.json"); }
+std::string TrainingSession::weightsPath() const { return path(kWeights); }
+std::string TrainingSession::resultPath() const { return path(kResult); }
 
 void TrainingSession::finish(const Evaluation& evaluation) {
   auto result = nlohmann::ordered_json::parse(evaluation.toJson());
@@ -205,22 +223,31 @@ void TrainingSession::finish(const Evaluation& evaluation) {
   result["training"] = {{"trajectories", trainer_->trajectoriesSeen()},
                         {"elapsed_sec", elapsedSec()},
                         {"options", options_.options().toYaml()}};
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(resultPath(), result.dump(2) + "\n");
+  core::writeFileAtomically(resultPath(), result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
+Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report,
+                      const std::function<void()>& may_stop) {
+  const auto stopAtSteps = [&](RolloutRunner& runner) {
+    if (may_stop) runner.setObserver([&](auto&&...) { may_stop(); });
+  };
   Trainer& trainer = session.trainer();
   RolloutRunner runner = session.trainingRunner();
+  stopAtSteps(runner);
   const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
   while (!trainer.finished()) {
     const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);
     runner.run(trainer.trajectoriesSeen(), trainer.missingInRound(), *agent, true,
                [&](Trajectory trajectory) { trainer.add(std::move(trajectory)); });
-    session.trainRound();
+    session.trainRound([&](double) {
+      if (may_stop) may_stop();
+    });
     report(session.progress());
   }
   RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
+  stopAtSteps(held_out);
   const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
   const Evaluation evaluation =
       evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {

@@ -125,7 +125,9 @@ WeightsFile WeightsFile::parse(const std::string& bytes, const std::string& sour
   return file;
 }
 
-WeightsFile WeightsFile::read(const std::string& path) { return parse(core::readFile(path), path); }
+WeightsFile WeightsFile::read(const std::string& path) {
+  return core::namingOutOfMemory(path, [&] { return parse(core::readFile(path), path); });
+}
 
 std::string WeightsFile::serialize() const {
   Json header = Json::object();

@@ -30,7 +30,7 @@ class Complaints : public console_bridge::OutputHandler {
 
 /// @param reason set to what the parser complained of.
 urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason) {
-  const std::string xml = core::readFile(path);
+  const std::string xml = core::readFile(path, core::kMaxTextBytes);
   Complaints complaints;
   urdf::ModelInterfaceSharedPtr model;
   try {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -195,6 +196,38 @@ TEST_F(CommandLine, InspectRefusesADamagedFileAndAddsADigestToAForeignOne) {
   EXPECT_TRUE(nn::WeightsFile::read(path("new.safetensors")).has_digest);
 }
 
+TEST_F(CommandLine, AStoppedTrainingSaysWhatIsKeptAndHowToGoOn) {
+  core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
+  const std::string folder = path("my run");
+  const std::string train = " train --task " + path("tiny.yaml") + " --output '" + folder +
+                            "' --trajectories 100000 --trajectories-per-round 2 --precision f32";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", ("exec " EARLY_FUSION_PROGRAM + train + " 2>" + path("err")).c_str(), nullptr);
+    ::_exit(99);
+  }
+  for (int i = 0; i < 3000 && !fs::exists(folder + "/checkpoint.safetensors"); ++i) ::usleep(20000);
+  ::kill(child, SIGTERM);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status)) << "killed by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 143);
+  const std::string errors = core::readFile(path("err"));
+  EXPECT_NE(errors.find(" are kept in " + folder + ".\nGo on with: early_fusion train --task " + path("tiny.yaml") +
+                        " --output '" + folder + "' --resume "),
+            std::string::npos)
+      << errors;
+  EXPECT_TRUE(nn::WeightsFile::read(folder + "/checkpoint.safetensors").has_digest);
+}
+
+TEST_F(CommandLine, AFullStandardOutputIsAnError) {
+  for (const char* arguments : {" inspect --task simple", " evaluate --policy idle --episodes 1 --json -"}) {
+    const std::string command = EARLY_FUSION_PROGRAM + std::string(arguments) + " >/dev/full 2>" + path("err");
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << command;
+    EXPECT_NE(core::readFile(path("err")).find("standard output"), std::string::npos) << core::readFile(path("err"));
+  }
+}
+
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
   const std::pair<std::string, std::string> mistakes[] = {
       {"train --output " + path("r") + " --channels 20", "channels"},
@@ -213,6 +246,13 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"inspect " + core::shareFolder() + "/config/world.yaml", "world.yaml: not a safetensors file, but a text"},
       {"evaluate --policy expert --episodes 0", "episodes"},
       {"difficulty --task simple harder", "harder"},
+      {"difficulty --seed -1", "seed: '-1' is not a whole number"},
+      {"evaluate --policy idle --seed -1", "seed: '-1' is not a whole number"},
+      {"evaluate --policy idle --seed ''", "seed: '' is not a whole number"},
+      {"render --episode -1 --out " + path("x.png"), "episode: '-1' is not a whole number"},
+      {"evaluate --policy idle --json - --trace -", "would mix on standard output"},
+      {"evaluate --policy idle --json " + path("no/x.json"), "--json: " + path("no/x.json") + ": there is no folder"},
+      {"evaluate --policy idle --episodes 1 --json /dev/full", "--json: /dev/full: cannot write"},
       {"difficulty --episodes 0", "episodes"},
       {"difficulty --world /no/such/world.yaml", "/no/such/world.yaml"},
       {"urdf camera --world /no/such/world.yaml", "/no/such/world.yaml"},

@@ -9,6 +9,7 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/model/policy_kinds.h"
+#include "early_fusion/model/vision_trunk.h"
 
 namespace early_fusion::learning {
 namespace {
@@ -45,6 +46,16 @@ class TrainingSessionTest : public testing::Test {
                  [&](Trajectory trajectory) { session.trainer().add(std::move(trajectory)); });
       session.trainRound();
     }
+  }
+
+  /// The error of starting a session; "accepted" if there is none.
+  static std::string errorOf(const SessionOptions& options) {
+    try {
+      TrainingSession session(options, world());
+    } catch (const core::Error& error) {
+      return error.what();
+    }
+    return "accepted";
   }
 
   const fs::path folder_ = fs::temp_directory_path() / ("early_fusion_session_test" + std::to_string(::getpid()));
@@ -179,6 +190,103 @@ TEST_F(TrainingSessionTest, RefusesTheHeldOutSeedAndATruncatedCheckpoint) {
   } catch (const core::Error& error) {
     EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
   }
+}
+
+TEST_F(TrainingSessionTest, EveryChangedBitOfACheckpointIsReportedAsDamage) {
+  {
+    TrainingSession session(options("a"), world());
+    runTo(session, 3);
+  }
+  const std::string path = folder_ / "a" / "checkpoint.safetensors";
+  const std::string bytes = core::readFile(path);
+  SessionOptions again = options("a");
+  again.resume = true;
+  for (std::size_t i = 0; i < 40; ++i) {
+    std::string damaged = bytes;
+    damaged[bytes.size() * i / 40] = static_cast<char>(damaged[bytes.size() * i / 40] ^ 1 << i % 8);
+    core::writeFileAtomically(path, damaged);
+    EXPECT_NE(errorOf(again).find(path + ": the file is damaged"), std::string::npos) << errorOf(again);
+  }
+  // Without a digest, damage could not be seen.
+  const std::string mark = "\"digest\":\"xxh3-128:";
+  std::string foreign = bytes;
+  foreign.replace(foreign.find(mark), mark.size(), "\"foreig\":\"xyz6-128:");
+  core::writeFileAtomically(path, foreign);
+  EXPECT_NE(errorOf(again).find(path + ": has no digest"), std::string::npos) << errorOf(again);
+  core::writeFileAtomically(path, bytes);
+  EXPECT_EQ(errorOf(again), "accepted");
+}
+
+TEST_F(TrainingSessionTest, StoresThePrecisionThatAutoMeansAndRefusesAnother) {
+  SessionOptions automatic = options("a");
+  automatic.policy.precision = "auto";
+  std::string precision;
+  {
+    TrainingSession session(automatic, world());
+    precision = session.options().policy.precision;
+    EXPECT_EQ(precision, model::resolvedPrecision("auto"));
+    runTo(session, 3);
+  }
+  automatic.resume = true;
+  EXPECT_EQ(errorOf(automatic), "accepted");
+  const std::string path = folder_ / "a" / "checkpoint.safetensors";
+  nn::WeightsFile file = nn::WeightsFile::read(path);
+  std::string& stored = file.metadata.at("session.options");
+  const std::string other = precision == "f32" ? "bf16" : "f32";
+  const std::size_t at = stored.find("precision: " + precision);
+  ASSERT_NE(at, std::string::npos) << stored;
+  stored.replace(at, 11 + precision.size(), "precision: " + other);
+  file.write(path);
+  EXPECT_NE(errorOf(automatic).find("precision = '" + other + "', not '" + precision + "'; set precision to '" + other),
+            std::string::npos)
+      << errorOf(automatic);
+}
+
+TEST_F(TrainingSessionTest, ASecondSessionInTheSameFolderIsRefused) {
+  TrainingSession session(options("a"), world());
+  EXPECT_NE(errorOf(options("a")).find(": process " + std::to_string(::getpid())), std::string::npos);
+  runTo(session, 3);
+}
+
+TEST_F(TrainingSessionTest, AFolderThatIsRemovedInMidRunIsAnErrorAndDoesNotComeBack) {
+  TrainingSession session(options("a"), world());
+  runTo(session, 3);
+  fs::remove_all(folder_ / "a");
+  EXPECT_THROW(runTo(session, 6), core::Error);
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+}
+
+TEST_F(TrainingSessionTest, RemovesTheTemporaryFilesOfAKilledRun) {
+  core::writeFileAtomically(folder_ / "a" / "weights.safetensors.tmp123", "half");
+  TrainingSession session(options("a"), world());
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "weights.safetensors.tmp123"));
+}
+
+TEST_F(TrainingSessionTest, AStopLeavesTheLastCheckpointAndTheSessionGoesOnBitForBit) {
+  TrainingSession whole(options("whole"), world());
+  runSession(whole, [](const Progress&) {});
+  {
+    TrainingSession stopped(options("parts"), world());
+    const auto stop = [&] {
+      if (stopped.trajectoriesSaved() >= 3) throw std::runtime_error("stop");
+    };
+    EXPECT_THROW(runSession(
+                     stopped, [](const Progress&) {}, stop),
+                 std::runtime_error);
+    EXPECT_EQ(stopped.trajectoriesSaved(), 3u);
+  }
+  SessionOptions again = options("parts");
+  again.resume = true;
+  TrainingSession resumed(again, world());
+  EXPECT_EQ(resumed.trainer().trajectoriesSeen(), 3u);
+  runSession(resumed, [](const Progress&) {});
+  EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+}
+
+TEST_F(TrainingSessionTest, AFolderWhoseNameIsNotUtf8KeepsItsResult) {
+  TrainingSession session(options("caf\xe9"), world());
+  runSession(session, [](const Progress&) {});
+  EXPECT_EQ(nlohmann::json::parse(core::readFile(session.resultPath()))["episodes"], 2);
 }
 
 }  // namespace
