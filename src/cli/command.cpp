@@ -2,10 +2,6 @@
 
 #include <unistd.h>
 
-#include <iostream>
-
-#include "early_fusion/core/file.h"
-
 namespace early_fusion::cli {
 
 void addCommands(CLI::App& app) {
@@ -41,14 +37,6 @@ void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOp
         ->type_name("")
         ->default_str(option.initial)
         ->group(group);
-  }
-}
-
-void writeTo(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    std::cout << text << std::flush;
-  } else {
-    core::writeFileAtomically(file, text);
   }
 }
 

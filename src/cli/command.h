@@ -24,9 +24,6 @@ void addCommands(CLI::App& app);
 /// to `given`, which must outlive the app.
 void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given);
 
-/// Writes to the file, or to standard output if it is "-".
-void writeTo(const std::string& file, const std::string& text);
-
 /// Whether standard error is a terminal, where a line can be overwritten.
 bool onTerminal();
 

@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "command.h"
+#include "early_fusion/core/command_words.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/experiment/experiment_runner.h"
 #include "early_fusion/experiment/folder_lock.h"
@@ -26,14 +28,14 @@ struct ExperimentOptions {
 };
 
 /// Checks a command of the program without running it. @throws Error with the reason.
-void checkCommand(const experiment::Words& words, const std::string& source) {
+void checkCommand(const core::Words& words, const std::string& source) {
   CLI::App app("early_fusion");
   addCommands(app);
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) command->callback([] {});
   try {
-    app.parse(experiment::Words(words.rbegin(), words.rend()));  // CLI11 takes the last argument first
+    app.parse(core::Words(words.rbegin(), words.rend()));  // CLI11 takes the last argument first
   } catch (const CLI::Error& error) {
-    throw core::Error(source + ": '" + experiment::shellText(words) + "': " + error.what());
+    throw core::Error(source + ": '" + core::shellText(words) + "': " + error.what());
   }
 }
 
@@ -42,9 +44,9 @@ void list(const std::vector<experiment::CellFolder>& folders) {
   const std::string program = fs::read_symlink("/proc/self/exe").string();
   for (const experiment::CellFolder& folder : folders) {
     std::string line;
-    for (experiment::Words words : folder.remaining()) {
+    for (core::Words words : folder.remaining()) {
       words.insert(words.begin(), program);
-      line += (line.empty() ? "" : " && ") + experiment::shellText(words);
+      line += (line.empty() ? "" : " && ") + core::shellText(words);
     }
     if (!line.empty()) std::cout << line << "\n";
   }
@@ -54,7 +56,7 @@ void collect(const experiment::Experiment& experiment, const std::vector<experim
              const std::string& output) {
   const std::vector<experiment::ResultRow> rows = experiment::collectResults(experiment, folders);
   const std::string file = (fs::path(output) / "results.csv").string();
-  writeTo(file, experiment::resultsCsv(experiment, rows));
+  core::writeFileAtomically(file, experiment::resultsCsv(experiment, rows));
   std::vector<std::string> unfinished;
   for (const experiment::CellFolder& folder : folders) {
     if (!folder.finished()) unfinished.push_back(folder.cell().name);

@@ -2,6 +2,7 @@
 
 #include "command.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/stop_signals.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -12,8 +13,12 @@ int main(int argc, char** argv) {
   early_fusion::cli::addCommands(app);
   try {
     app.parse(argc, argv);
+    if (!std::cout.flush()) throw early_fusion::core::Error("standard output cannot be written");
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
+  } catch (const early_fusion::core::Stopped& stopped) {
+    std::cerr << "\nearly_fusion: " << stopped.what() << "\n";
+    return stopped.exitCode();
   } catch (const std::exception& error) {
     std::cerr << "early_fusion: " << error.what() << "\n";
     return 1;

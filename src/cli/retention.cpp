@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "command.h"
+#include "early_fusion/core/output_file.h"
 #include "named_agent.h"
 
 namespace early_fusion::cli {
@@ -30,11 +31,12 @@ void measure(const Arguments& arguments) {
   const auto world = world::loadWorld(session.world);
   const auto policy = loadPolicyFor(*world, nn::WeightsFile::read(weights), weights, session.policy.precision);
   std::vector<learning::RetentionPoint> points;
+  core::OutputFile("--out", out).write(retentionCsv(points));  // an error before the work
   for (const learning::FirstRequest first : {learning::FirstRequest::kSame, learning::FirstRequest::kOther}) {
     learning::Retention retention(*policy, *world, session, options, first);
     while (!retention.finished()) {
       points.push_back(retention.next());
-      writeTo(out, retentionCsv(points));
+      core::OutputFile("--out", out).write(retentionCsv(points));
       std::cerr << points.back().kind << ", first request: " << learning::firstRequestNames()[static_cast<int>(first)]
                 << ", " << points.back().trajectories << " trajectories: " << points.back().evaluation.summary()
                 << std::endl;

@@ -1,8 +1,5 @@
 #include "early_fusion/experiment/cell_commands.h"
 
-#include <algorithm>
-#include <cctype>
-
 namespace early_fusion::experiment {
 
 namespace {
@@ -13,31 +10,12 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
   }
 }
 
-std::string quoted(const std::string& word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string("_-./=:,+@%{}").find(static_cast<char>(c)) != std::string::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string inside = word;
-  replaceAll(inside, "'", "'\\''");
-  return "'" + inside + "'";
-}
-
 }  // namespace
 
 Words trainCommand(const Cell& cell, const std::string& folder) {
-  Words words = {"train"};
   learning::SessionOptions session = cell.session;
-  const core::OptionSet options = session.options();
-  for (const auto& [name, value] : cell.given) {
-    const auto option = std::find_if(options.options().begin(), options.options().end(),
-                                     [name = name](const core::Option& candidate) { return candidate.name == name; });
-    if (option->isSwitch()) {
-      words.push_back(option->flag() + "=" + value);
-    } else {
-      words.insert(words.end(), {option->flag(), value});
-    }
-  }
+  Words words = core::flagWords(session.options(), cell.given);
+  words.insert(words.begin(), "train");
   words.insert(words.end(), {"--resume", "--output", folder});
   return words;
 }
@@ -51,12 +29,6 @@ Words followUpCommand(const FollowUp& follow_up, const Cell& cell, const std::st
     replaceAll(word, "{cell}", folder);
   }
   return words;
-}
-
-std::string shellText(const Words& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + quoted(word);
-  return text;
 }
 
 }  // namespace early_fusion::experiment

@@ -23,7 +23,7 @@ bool isThere(const fs::path& path) {
 
 constexpr char kSomeFolder[] = "{cell}";  // stands for the cell's folder in the file `command`
 
-std::string commandLine(const Words& words) { return "early_fusion " + shellText(words); }
+std::string commandLine(const Words& words) { return "early_fusion " + core::shellText(words); }
 
 std::string commandLine(const FollowUp& follow_up, const Cell& cell) {
   return commandLine(followUpCommand(follow_up, cell, kSomeFolder));

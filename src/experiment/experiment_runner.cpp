@@ -52,7 +52,7 @@ class RunningCell {
       failure_ =
           lastLine(folder_.logPath()) + (*code > 128 ? " (ended by signal " + std::to_string(*code - 128) + ")" : "");
     } else if (left >= left_) {
-      failure_ = "its command wrote no scores: " + shellText(command_);
+      failure_ = "its command wrote no scores: " + core::shellText(command_);
     } else if (left > 0) {
       startNext();
       return false;
@@ -67,7 +67,7 @@ class RunningCell {
     const std::vector<Words> commands = folder_.remaining();
     left_ = commands.size();
     command_ = commands.front();
-    std::ofstream(folder_.logPath(), std::ios::app) << "$ early_fusion " << shellText(command_) << std::endl;
+    std::ofstream(folder_.logPath(), std::ios::app) << "$ early_fusion " << core::shellText(command_) << std::endl;
     std::vector<std::pair<std::string, std::string>> environment;
     if (std::getenv(kThreads) == nullptr) {
       const int threads = static_cast<int>(std::thread::hardware_concurrency()) / options_.jobs;

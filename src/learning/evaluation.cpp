@@ -61,7 +61,8 @@ std::string Evaluation::toJson() const {
                                    {"recall", outcome.score.recall},
                                    {"agreement", outcome.agreement}});
   }
-  return json.dump(2) + "\n";
+  // A weights file's path may not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string Evaluation::summary() const {

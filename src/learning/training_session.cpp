@@ -8,17 +8,24 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/frame_drawer.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/vision_trunk.h"
 
 namespace early_fusion::learning {
 
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
+constexpr char kCurveFile[] = "curve.csv";
 constexpr char kScores[] = "scores.csv";
+constexpr char kOptionsFile[] = "options.yaml";
+constexpr char kWeights[] = "weights.safetensors";
+constexpr char kResult[] = "result.json";
+constexpr std::array kFiles = {kCheckpoint, kCurveFile, kScores, kOptionsFile, kWeights, kResult};
 // Keys of a checkpoint's metadata.
 constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
 constexpr char kTask[] = "session.task";        // sim::Task as YAML
@@ -59,12 +66,16 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
   all.insert(now.begin(), now.end());
   const auto value = [](const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
-    return found == settings.end() ? "(absent)" : "'" + found->second + "'";
+    return found == settings.end() ? "(absent)" : "'" + core::excerpt(found->second) + "'";
   };
   for (const auto& [name, unused] : all) {
     if (value(before, name) == value(now, name)) continue;
-    throw core::Error(source + ": the session was started with " + name + " = " + value(before, name) + ", not " +
-                      value(now, name) + "; resume it with the same settings, or choose another output folder");
+    const std::string advice =
+        name == "precision" ? "; set precision to " + value(before, name) +
+                                  " to go on in that arithmetic on this processor, or choose another output folder"
+                            : "; resume it with the same settings, or choose another output folder";
+    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) +
+                      ", not " + value(now, name) + advice);
   }
 }
 
@@ -105,6 +116,9 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
   checkSession(options_, *world_);
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
+  options_.policy.precision = model::resolvedPrecision(options_.policy.precision);
+  lock_ = std::make_unique<core::FolderLock>(options_.output);
+  for (const char* name : kFiles) core::removeTemporaryFiles(path(name));
   const auto drawer = std::make_shared<FrameDrawer>(world_);
   trainer_ = std::make_unique<Trainer>(
       options_.policy, options_.training, world_->objects.vocabulary(), options_.seed,
@@ -117,7 +131,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   if (there) {
     resume();
   } else {
-    core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
+    core::writeFileAtomically(path(kOptionsFile), options_.options().toYaml());
   }
 }
 
@@ -126,6 +140,11 @@ sim::Task TrainingSession::trainingTask() const { return trainingTaskOf(options_
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
   const nn::WeightsFile file = nn::WeightsFile::read(source);
+  if (!file.has_digest) {
+    throw core::Error(source +
+                      ": has no digest, so damage could not be seen; it is damaged, or an earlier version wrote it; "
+                      "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
+  }
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }
@@ -163,8 +182,9 @@ std::unique_ptr<Agent> TrainingSession::rolloutAgent() {
 
 /// Writes the checkpoint last: if the process dies before that, the round is trained again and writes all files again.
 void TrainingSession::save() const {
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
+  core::writeFileAtomically(path(kCurveFile), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) file.metadata[key] = yaml;
   file.metadata[kElapsed] = std::to_string(elapsedSec());
@@ -237,12 +257,16 @@ Progress TrainingSession::progress() const {
   return progress;
 }
 
+std::uint64_t TrainingSession::trajectoriesSaved() const {
+  return curve_.points().empty() ? 0 : curve_.points().back().round.trajectories;
+}
+
 std::string TrainingSession::path(const std::string& name) const {
   return (std::filesystem::path(options_.output) / name).string();
 }
 
-std::string TrainingSession::weightsPath() const { return path("weights.safetensors"); }
-std::string TrainingSession::resultPath() const { return path("result.json"); }
+std::string TrainingSession::weightsPath() const { return path(kWeights); }
+std::string TrainingSession::resultPath() const { return path(kResult); }
 
 void TrainingSession::finish(const Evaluation& evaluation) {
   if (!evaluation.outcomes.empty()) addScore(evaluation);
@@ -252,8 +276,9 @@ void TrainingSession::finish(const Evaluation& evaluation) {
   result["training"] = {{"trajectories", trainer_->trajectoriesSeen()},
                         {"elapsed_sec", elapsedSec()},
                         {"options", options_.options().toYaml()}};
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(resultPath(), result.dump(2) + "\n");
+  core::writeFileAtomically(resultPath(), result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string& source) {
@@ -264,32 +289,6 @@ sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string&
     if (found != weights.metadata.end()) set.set(option.name, found->second, source + ": metadata");
   }
   return pairs;
-}
-
-Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
-  Trainer& trainer = session.trainer();
-  RolloutRunner runner = session.trainingRunner();
-  const auto score = [&] {
-    RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
-    const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
-    return evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
-      Progress progress = session.progress();
-      progress.stage = "evaluation";
-      progress.evaluated = done;
-      report(progress);
-    });
-  };
-  while (!trainer.finished()) {
-    if (session.scoreDue()) session.addScore(score());
-    const std::unique_ptr<Agent> agent = session.rolloutAgent();
-    runner.run(trainer.trajectoriesSeen(), trainer.missingInRound(), *agent, true,
-               [&](Trajectory trajectory) { trainer.add(std::move(trajectory)); });
-    session.trainRound();
-    report(session.progress());
-  }
-  const Evaluation evaluation = score();
-  session.finish(evaluation);
-  return evaluation;
 }
 
 }  // namespace early_fusion::learning

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/folder_lock.h"
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/learning_curve.h"
 #include "early_fusion/learning/progress.h"
@@ -27,14 +28,16 @@ void checkSession(const SessionOptions& options, const world::World& world);
 /// clock.
 ///
 /// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the current policy),
-/// curve.csv, scores.csv, options.yaml and, at the end, result.json.
+/// curve.csv, scores.csv, options.yaml, session.lock (held as long as this object lives) and, at the end, result.json.
 class TrainingSession {
  public:
   /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.
-  /// @throws Error as checkSession() does, and if the folder has another session or if the checkpoint has other options
-  /// or is damaged.
+  /// Removes the temporary files of earlier runs that were killed.
+  /// @throws Error as checkSession() does, and if the folder has another session, if another process trains in it, or if
+  /// the checkpoint has other options or is damaged.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
+  /// Precision is "f32" or "bf16", never "auto": a resumed session must compute in the same arithmetic.
   const SessionOptions& options() const { return options_; }
   const world::World& world() const { return *world_; }
   /// The task that the policy is scored on.
@@ -55,6 +58,8 @@ class TrainingSession {
   bool resumed() const { return resumed_; }
 
   /// Trains a round that is due, and writes the weights, the curve and the checkpoint.
+  /// @param progress called after every training step. If it throws, nothing is written.
+  /// @throws Error if the run folder was removed or replaced.
   RoundStatistics trainRound(const std::function<void(double share)>& progress = {});
 
   /// Whether the current policy has to be scored before the session goes on; see SessionOptions::score_every.
@@ -70,6 +75,9 @@ class TrainingSession {
   nn::WeightsFile weights() const;
 
   Progress progress() const;
+
+  /// The number of trajectories in the last checkpoint; 0 if there is none.
+  std::uint64_t trajectoriesSaved() const;
 
   std::string weightsPath() const;
   std::string resultPath() const;
@@ -88,6 +96,7 @@ class TrainingSession {
   SessionOptions options_;
   std::shared_ptr<const world::World> world_;
   sim::Task task_;
+  std::unique_ptr<core::FolderLock> lock_;
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;
   ScoreCurve scores_;
@@ -103,6 +112,9 @@ sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string&
 
 /// Runs a session to its end in this process: rollouts, training, evaluation on held-out episodes.
 /// @param report called after every round and after every held-out episode.
-Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report);
+/// @param may_stop called at every step of the rollouts, the training and the evaluation, never while a file is
+/// written. It ends the session if it throws; the last checkpoint stays.
+Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report,
+                      const std::function<void()>& may_stop = {});
 
 }  // namespace early_fusion::learning
