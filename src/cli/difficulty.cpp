@@ -87,7 +87,7 @@ void addDifficulty(CLI::App& app) {
   command->add_option("--task", options->tasks, "one or more of simple, medium, hard, or a task's YAML file")
       ->capture_default_str();
   const auto given = std::make_shared<core::GivenOptions>();
-  addOptionFlags(*command, DifficultyOptions().options(), *given);
+  addOptionFlags<DifficultyOptions>(*command, *given);
   command->callback([options, given] {
     core::OptionSet set = options->options();
     for (const auto& [name, value] : *given) set.set(name, value, "command line");

@@ -113,7 +113,7 @@ void addEvaluate(CLI::App& app) {
                          "Score a policy or a baseline on episodes.\n"
                          "Example: early_fusion evaluate --policy expert --task hard --episodes 1000 --json -");
   const auto given = std::make_shared<core::GivenOptions>();
-  addOptionFlags(*command, EvaluateOptions().options(), *given);
+  addOptionFlags<EvaluateOptions>(*command, *given);
   command->get_option("--policy")->required();
   command->callback([given] { evaluate(*given); });
 }

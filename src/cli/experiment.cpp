@@ -27,14 +27,18 @@ struct ExperimentOptions {
   bool collect = false;
 };
 
+struct Parsed {};
+
 /// Checks a command of the program without running it. @throws Error with the reason.
 void checkCommand(const core::Words& words, const std::string& source) {
   CLI::App app("early_fusion");
   addCommands(app);
-  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) command->callback([] {});
+  app.parse_complete_callback([] { throw Parsed(); });  // comes before the command's own callback
   try {
     app.parse(core::Words(words.rbegin(), words.rend()));  // CLI11 takes the last argument first
-  } catch (const CLI::Error& error) {
+  } catch (const Parsed&) {
+    return;
+  } catch (const std::exception& error) {  // CLI::Error or core::Error
     throw core::Error(source + ": '" + core::shellText(words) + "': " + error.what());
   }
 }

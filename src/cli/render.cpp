@@ -131,7 +131,7 @@ void addRender(CLI::App& app) {
       "Draw what the camera sees as PNG files.\n"
       "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
   const auto given = std::make_shared<core::GivenOptions>();
-  addOptionFlags(*command, RenderOptions().options(), *given);
+  addOptionFlags<RenderOptions>(*command, *given);
   command->get_option("--out")->required();
   command->callback([given] {
     RenderOptions options;

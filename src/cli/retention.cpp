@@ -60,7 +60,7 @@ void addRetention(CLI::App& app) {
       ->required();
   command->add_option("--out", arguments->out,
                       "CSV file for the scores, written after each scoring; default: retention.csv in the run folder");
-  addOptionFlags(*command, learning::RetentionOptions().options(), arguments->given);
+  addOptionFlags<learning::RetentionOptions>(*command, arguments->given);
   command->callback([arguments] { measure(*arguments); });
 }
 

@@ -62,8 +62,7 @@ void addTrain(CLI::App& app) {
                          "Train a policy in this process, and score it on held-out episodes.\n"
                          "Example: early_fusion train --task medium --channels 32 --output runs/medium32");
   const auto given = std::make_shared<core::GivenOptions>();
-  learning::SessionOptions defaults;
-  addOptionFlags(*command, defaults.options(), *given);
+  addOptionFlags<learning::SessionOptions>(*command, *given);
   command->get_option("--output")->required();
   command->callback([given] { train(*given); });
 }

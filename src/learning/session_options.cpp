@@ -11,6 +11,8 @@ core::OptionSet SessionOptions::options() {
           "fast, paper, or a preset's YAML file; its values replace the defaults of the other options");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
   set.add("seed", seed, "determines the episodes, the initial weights and every other random draw");
+  set.add("from", from,
+          "a weights file to start from: items that it knows keep what they learnt; empty: random initial weights");
   set.add("output", output, "run folder for the checkpoint, the weights, the learning curve and the result");
   set.add("resume", resume, "continue from the run folder's checkpoint if there is one");
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",

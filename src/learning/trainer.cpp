@@ -9,6 +9,7 @@
 #include "early_fusion/learning/checkpoint_tensors.h"
 #include "early_fusion/model/policy_file.h"
 #include "early_fusion/model/policy_kinds.h"
+#include "early_fusion/model/warm_start.h"
 
 namespace early_fusion::learning {
 
@@ -39,6 +40,11 @@ Trainer::Trainer(const model::PolicyOptions& policy, const TrainingOptions& trai
       ema_(training.weight_ema > 0 ? model::makePolicy(policy, vocabulary, seed) : nullptr),
       adam_(learner_->parameters().values().size(), adamOptions(training)),
       window_(training.window, training.window_memory * kBytesPerMegabyte, std::move(redraw)) {}
+
+void Trainer::warmStart(const model::TrainablePolicy& trained, const std::string& source) {
+  model::warmStart(trained, source, *learner_);
+  if (ema_) model::warmStart(trained, source, *ema_);
+}
 
 void Trainer::add(Trajectory trajectory) {
   dropUntrainedRequests(trajectory, options_);

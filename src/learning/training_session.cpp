@@ -108,6 +108,9 @@ void checkSession(const SessionOptions& options, const world::World& world) {
   if (options.score_every > 0 && options.evaluation_episodes == 0) {
     throw core::Error("score_every: a score needs episodes, but evaluation_episodes is 0; set both or neither");
   }
+  if (!options.from.empty() && options.training.restart_policy) {
+    throw core::Error("from: a policy that restarts in each round (restart_policy) forgets it; set only one of them");
+  }
   trainingTaskOf(options.training, sim::loadTask(options.task));
 }
 
@@ -131,6 +134,9 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   if (there) {
     resume();
   } else {
+    if (!options_.from.empty()) {
+      trainer_->warmStart(*model::loadPolicy(nn::WeightsFile::read(options_.from), options_.from), options_.from);
+    }
     core::writeFileAtomically(path(kOptionsFile), options_.options().toYaml());
   }
 }

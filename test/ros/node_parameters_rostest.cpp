@@ -15,7 +15,7 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {

@@ -19,6 +19,7 @@ early_fusion_add_test(ros session_test ${PROJECT_NAME}_child_process nlohmann_js
 foreach(name node_parameters policy_node real_camera simulator_node)
   if(rostest_FOUND)
     add_rostest_gtest(${name}_rostest ros/${name}.test ros/${name}_rostest.cpp)
+    target_include_directories(${name}_rostest PRIVATE ${PROJECT_SOURCE_DIR}/test)
     target_include_directories(${name}_rostest SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
     target_link_libraries(${name}_rostest ${PROJECT_NAME}_ros ${PROJECT_NAME}_child_process gtest)
   else()

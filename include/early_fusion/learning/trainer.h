@@ -38,6 +38,10 @@ class Trainer {
   Trainer(const model::PolicyOptions& policy, const TrainingOptions& training, const core::Vocabulary& vocabulary,
           std::uint64_t seed, Redraw redraw = {});
 
+  /// Starts from a trained policy's weights instead of initial ones. To be called before the first round.
+  /// @throws Error as model::warmStart().
+  void warmStart(const model::TrainablePolicy& trained, const std::string& source);
+
   /// Adds the trajectory of the episode with number trajectoriesSeen(). Trajectories must come in order.
   void add(Trajectory trajectory);
 
