@@ -87,6 +87,24 @@ TEST_F(RealCameraTest, WithoutAnAnswerTheSameStepIsAskedAgainAboutANewImage) {
   act("IDLE", second->header);
 }
 
+TEST_F(RealCameraTest, ATimeThatJumpsBackBeginsANewEpisode) {
+  const RequestConstPtr first = nextRequest();
+  ASSERT_TRUE(first);
+  act("IDLE", first->header);
+  const RequestConstPtr second = nextRequest();
+  ASSERT_TRUE(second);
+  EXPECT_GT(second->step, 0u);
+  requests_.clear();
+  sensor_msgs::Image earlier;
+  earlier.header.stamp = ::ros::Time(10);
+  ASSERT_TRUE(spinUntil([&] {
+    image_publisher_.publish(earlier);
+    return !requests_.empty();
+  }));
+  EXPECT_EQ(requests_.front()->step, 0u);
+  act("IDLE", requests_.front()->header);
+}
+
 TEST_F(RealCameraTest, TheServiceChangesWhatIsAskedFor) {
   SetRequest call;
   call.request.items = {"apple"};

@@ -48,10 +48,31 @@ RequestNode::RequestNode(const Options& options)
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
   image_subscriber_ = image_transport_.subscribe(kImageTopic, 1, &RequestNode::onImage, this,
                                                  image_transport::TransportHints(options_.image_transport));
+  NeededTopic images = neededImage(image_subscriber_.getTopic(), options_.image_transport,
+                                   "remap camera/image_raw to the camera's (real_camera.launch: image)");
+  images.must_go_on = true;
+  watch_.expect(images);
+}
+
+void RequestNode::noteStamp(const ::ros::Time& stamp) {
+  if (stamp < latest_image_) {
+    ROS_INFO("the images' time has jumped back by %.3f s: a new episode begins", (latest_image_ - stamp).toSec());
+    step_ = 0;
+    waiting_ = false;
+  }
+  if (stamp == latest_image_) {
+    ROS_WARN_ONCE(
+        "the stamps of the images stand still at %.3f, so the policy cannot tell an image from the one before it; let "
+        "the camera's driver stamp the images",
+        stamp.toSec());
+  }
+  latest_image_ = stamp;
 }
 
 void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   health_.count("images");
+  watch_.heard(image_subscriber_.getTopic());
+  noteStamp(image->header.stamp);
   const ::ros::WallTime now = ::ros::WallTime::now();
   const double since_sec = (now - asked_at_).toSec(), settled_sec = (now - std::max(asked_at_, answered_at_)).toSec();
   if (settled_sec < 1 / options_.rate_hz || (waiting_ && since_sec < options_.answer_timeout_sec)) return;
@@ -63,12 +84,15 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   asked_.step = step_;
   asked_.items = items_;
   request_publisher_.publish(asked_);
+  watch_.expect({"action", action_subscriber_.getTopic(), "early_fusion/Action",
+                 "start policy_node in this namespace with the same images"});
   asked_at_ = now;
   waiting_ = true;
   health_.count("requests");
 }
 
 void RequestNode::onAction(const Action& action) {
+  watch_.heard(action_subscriber_.getTopic());
   if (!waiting_ || action.header.stamp != asked_.header.stamp) return;
   waiting_ = false;
   answered_at_ = ::ros::WallTime::now();

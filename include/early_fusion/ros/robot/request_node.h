@@ -11,6 +11,7 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/topic_watch.h"
 
 namespace early_fusion::nodes {
 
@@ -34,14 +35,17 @@ class RequestNode {
 
  private:
   void onImage(const sensor_msgs::ImageConstPtr& image);
+  void noteStamp(const ::ros::Time& stamp);
   void onAction(const Action& action);
   bool onSetRequest(SetRequest::Request& request, SetRequest::Response& response);
 
   Options options_;
   ::ros::NodeHandle node_;
   Health health_;
+  TopicWatch watch_;
   std::vector<std::string> items_;
   std::uint32_t step_ = 0;
+  ::ros::Time latest_image_;
   bool waiting_ = false;  // for the action that answers asked_
   Request asked_;
   ::ros::WallTime asked_at_, answered_at_;
