@@ -177,8 +177,8 @@ TEST(PolicyImage, APartOfABayerImageIsConvertedAsTheWhole) {
   }
 }
 
-TEST(PolicyImage, HalfAPairOfYuvAtTheEdgeIsRefused) {
-  EXPECT_THROW(policyImage(*makeImage(15, 10, "yuv422", 2), {5, 0, 10, 10, ""}, 16), core::Error);
+TEST(PolicyImage, YuvOfAnOddWidthIsRefused) {
+  EXPECT_THROW(policyImage(*makeImage(15, 10, "yuv422", 2), squareOf(15, 10, 10), 16), core::Error);
 }
 
 }  // namespace

@@ -71,6 +71,9 @@ cv::Mat rowsOf(const sensor_msgs::Image& image, int type) {
   if (image.width > kLongestEdge || image.height > kLongestEdge) {
     throw core::Error(describe(image) + " is larger than " + std::to_string(kLongestEdge) + " px");
   }
+  if (type == CV_8UC2 && image.width % 2 != 0) {
+    throw core::Error(describe(image) + " has an odd width; two pixels share their colour");
+  }
   const std::size_t row = std::size_t{image.width} * CV_ELEM_SIZE(type);
   if (image.step < row) {
     throw core::Error(describe(image) + " has rows of " + std::to_string(image.step) + " bytes, fewer than the " +
