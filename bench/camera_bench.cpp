@@ -1,6 +1,8 @@
 // Time from a camera's image to the policy node's action, and the node's memory: roslaunch bench/camera_bench.launch
 #include <early_fusion/Action.h>
 #include <early_fusion/Request.h>
+#include <ros/callback_queue.h>
+#include <ros/network.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
 #include <signal.h>
