@@ -28,6 +28,7 @@ class PolicyNode {
     std::string weights;  ///< a weights file; empty: wait for the topic or the service
     Acting acting;        ///< how weights from a file act
     std::string image_transport = "raw";
+    bool name_items = false;
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
@@ -41,6 +42,7 @@ class PolicyNode {
 
  private:
   void onImage(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request);
+  void nameItem(core::Action action, const Request& request);
   void onWeights(const Weights& message);
   bool onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response);
   bool onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response);
