@@ -19,7 +19,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libcli11-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev)
-debian_ros=(catkin libactionlib-dev libcv-bridge-dev libdiagnostic-updater-dev libimage-transport-dev
+debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport-dev
   libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libtf2-ros-dev
   libtrajectory-msgs-dev libvisualization-msgs-dev
   python3-actionlib python3-diagnostic-msgs python3-rosbag ros-actionlib-msgs ros-core ros-diagnostic-msgs

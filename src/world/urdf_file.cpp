@@ -29,8 +29,10 @@ class Complaints : public console_bridge::OutputHandler {
 };
 
 /// @param reason set to what the parser complained of.
-urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason) {
-  const std::string xml = core::readFile(path);
+urdf::ModelInterfaceSharedPtr parse(const std::string& xml, const std::string& path, std::string& reason) {
+  if (xml.find("<xacro:") != std::string::npos) {
+    throw core::Error(path + ": is a xacro file, not a URDF; run xacro first (xacro robot.urdf.xacro > robot.urdf)");
+  }
   Complaints complaints;
   urdf::ModelInterfaceSharedPtr model;
   try {
@@ -45,14 +47,16 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::string& source) {
   std::string reason;
-  return parse(path, reason);
+  return parse(xml, source, reason);
 }
+
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) { return parseUrdf(core::readFile(path), path); }
 
 urdf::ModelInterfaceSharedPtr loadWholeUrdf(const std::string& path) {
   std::string reason;
-  urdf::ModelInterfaceSharedPtr model = parse(path, reason);
+  urdf::ModelInterfaceSharedPtr model = parse(core::readFile(path), path, reason);
   if (reason.empty()) return model;
   throw core::Error(path + ": a part cannot be read: " + reason +
                     "; shapes are box, cylinder, sphere and mesh, with positive sizes");

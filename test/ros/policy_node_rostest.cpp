@@ -145,6 +145,33 @@ TEST_F(PolicyNodeTest, AnswersAStepThatIsPublishedAgainAsBefore) {
   EXPECT_EQ(twice->frames, 2);
 }
 
+TEST_F(PolicyNodeTest, SaysWhichRequestedItemACollectOrRemoveIsFor) {
+  ASSERT_TRUE(publishWeights("named", "sample"));
+  ActingPolicy expected;
+  expected.load(file_, "test", {"sample", 11, "f32"});
+  int picks = 0, others = 0;
+  for (std::uint32_t step = 0; picks == 0 || others == 0; ++step) {
+    ASSERT_LT(step, 200u);
+    const sensor_msgs::Image image = makeImage(kSize, kSize, 800 + step);
+    ask(image, 30, step, {"mug", "bowl"});
+    const ActionConstPtr action = answer();
+    ASSERT_TRUE(action);
+    core::Image frame(kSize, kSize);
+    frame.rgb = image.data;
+    expected.decide(frame, {"mug", "bowl"}, 30, step);
+    if (action->name == "COLLECT" || action->name == "REMOVE") {
+      ++picks;
+      const LikelyItem item = expected.likeliestItem(core::actionFromName(action->name));
+      EXPECT_EQ(action->item, item.name);
+      EXPECT_EQ(action->item_probability, item.probability);
+    } else {
+      ++others;
+      EXPECT_EQ(action->item, "");
+      EXPECT_EQ(action->item_probability, 0);
+    }
+  }
+}
+
 TEST_F(PolicyNodeTest, TakesACamerasImageOfAnySizeAndOrderOfColours) {
   ASSERT_TRUE(publishWeights("camera"));
   ActingPolicy expected;

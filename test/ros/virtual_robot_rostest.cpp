@@ -21,10 +21,10 @@ namespace {
 
 class VirtualRobotTest : public testing::Test {
  protected:
-  VirtualRobotTest() : world_(world::loadWorld("")), picker_("pick", false) {
-    pan_publisher_ = node_.advertise<std_msgs::Float64>(kPanPositionTopic, 1);
-    tilt_publisher_ = node_.advertise<std_msgs::Float64>(kTiltPositionTopic, 1);
-    trajectory_publisher_ = node_.advertise<trajectory_msgs::JointTrajectory>(kTrajectoryTopic, 1);
+  VirtualRobotTest() : world_(world::loadWorld("")), picker_(kPickAction, false) {
+    pan_publisher_ = node_.advertise<std_msgs::Float64>(kPanCommandTopic, 1);
+    tilt_publisher_ = node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1);
+    trajectory_publisher_ = node_.advertise<trajectory_msgs::JointTrajectory>(kTrajectoryCommandTopic, 1);
     image_subscriber_ = node_.subscribe<sensor_msgs::Image>(
         kImageTopic, 10, [this](const sensor_msgs::ImageConstPtr& message) { image_ = message; });
     info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(

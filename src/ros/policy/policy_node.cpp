@@ -32,6 +32,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.addChoice("rectified", rectified, {"auto", "true", "false"},
                 "whether the images are rectified, so that P of camera_info describes them instead of K; auto: if the "
                 "image topic's name says so (image_rect)");
+  set.add("name_items", name_items,
+          "say which requested item a COLLECT or REMOVE is for; costs one prediction for each requested item then");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "enlargement of the annotated image");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "maximum number of annotated images a second");
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
@@ -113,6 +115,7 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   answer_.weights = weights_id_;
   answer_.mode = policy_.acting().mode;
   answer_.frames = static_cast<std::uint8_t>(decision.frames);
+  nameItem(decision.action, request);
   answer_valid_ = true;
   action_publisher_.publish(answer_);
   latency_sec_ = (::ros::WallTime::now() - began).toSec();
@@ -133,6 +136,14 @@ Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
   }
   crop_warning_ = crop.warning;
   return crop;
+}
+
+void PolicyNode::nameItem(core::Action action, const Request& request) {
+  const bool picks = action == core::Action::kCollect || action == core::Action::kRemove;
+  LikelyItem item;
+  if (options_.name_items && picks && !request.items.empty()) item = policy_.likeliestItem(action);
+  answer_.item = item.name;
+  answer_.item_probability = item.probability;
 }
 
 void PolicyNode::onWeights(const Weights& message) {

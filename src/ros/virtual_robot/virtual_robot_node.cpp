@@ -73,7 +73,7 @@ VirtualRobotNode::VirtualRobotNode(const Options& options)
       episode_publisher_(node_.advertise<EpisodeResult>(kEpisodeTopic, 64)),
       marker_publisher_(node_.advertise<visualization_msgs::MarkerArray>(kMarkersTopic, 1)),
       request_client_(node_.serviceClient<SetRequest>(kSetRequestService)),
-      pick_server_(node_, "pick", false) {
+      pick_server_(node_, kPickAction, false) {
   unit_.place(world_->rig.lattice().at(world_->rig.lattice().size() / 2));
   action_subscriber_ =
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });

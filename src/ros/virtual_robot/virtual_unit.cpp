@@ -72,13 +72,13 @@ VirtualUnit::VirtualUnit(::ros::NodeHandle& node, const world::CameraRig& rig, c
               jointWithin(rig.lattice().lowest.tilt, rig.lattice().highest.tilt, options.motion)},
       joint_publisher_(node.advertise<sensor_msgs::JointState>(kJointStatesTopic, 100)) {
   pan_subscriber_ = node.subscribe<std_msgs::Float64>(
-      kPanPositionTopic, 10,
+      kPanCommandTopic, 10,
       [this](const std_msgs::Float64ConstPtr& angle) { joints_[0].command(angle->data, nowSec()); });
   tilt_subscriber_ = node.subscribe<std_msgs::Float64>(
-      kTiltPositionTopic, 10,
+      kTiltCommandTopic, 10,
       [this](const std_msgs::Float64ConstPtr& angle) { joints_[1].command(angle->data, nowSec()); });
   trajectory_subscriber_ = node.subscribe<trajectory_msgs::JointTrajectory>(
-      kTrajectoryTopic, 10,
+      kTrajectoryCommandTopic, 10,
       [this](const trajectory_msgs::JointTrajectoryConstPtr& trajectory) { onTrajectory(*trajectory); });
   timer_ = node.createWallTimer(::ros::WallDuration(1 / options_.joint_state_rate_hz),
                                 [this](const ::ros::WallTimerEvent&) { publishJointStates(); });

@@ -28,6 +28,7 @@ class PolicyNode {
     Acting acting;        ///< how weights from a file act
     std::string image_transport = "raw";
     std::string rectified = "auto";
+    bool name_items = false;
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
@@ -46,6 +47,7 @@ class PolicyNode {
   /// @throws core::Error if the image or the request cannot be used.
   Decision decide(const sensor_msgs::Image& image, const Request& request);
   Crop cropOf(const sensor_msgs::Image& image);
+  void nameItem(core::Action action, const Request& request);
   void expectTopics();
   void onWeights(const Weights& message);
   bool onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response);

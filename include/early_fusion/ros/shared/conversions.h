@@ -4,10 +4,12 @@
 #include <early_fusion/Request.h>
 #include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
+#include <geometry_msgs/Pose.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,8 @@
 #include "early_fusion/world/world.h"
 
 namespace early_fusion::nodes {
+
+geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
 
 /// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);

@@ -15,11 +15,6 @@
 
 namespace early_fusion::nodes {
 
-// The topics of its controllers, as those of real units are named.
-inline constexpr char kPanPositionTopic[] = "pan_position_controller/command";
-inline constexpr char kTiltPositionTopic[] = "tilt_position_controller/command";
-inline constexpr char kTrajectoryTopic[] = "pan_tilt_trajectory_controller/command";
-
 /// The camera's pose at angles [rad] between the rig's orientations, within its limits.
 Eigen::Isometry3d worldFromCamera(const world::CameraRig& rig, double pan_rad, double tilt_rad);
 
