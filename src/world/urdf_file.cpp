@@ -72,21 +72,10 @@ void checkTree(const urdf::ModelInterface& model, const std::string& path) {
   }
 }
 
-void checkLimits(const urdf::ModelInterface& model, const std::string& path) {
-  for (const auto& [name, joint] : model.joints_) {
-    if (!joint->limits || joint->limits->lower <= joint->limits->upper) continue;
-    std::ostringstream text;
-    text << path << ": joint '" << core::excerpt(name) << "' has the lower limit " << joint->limits->lower
-         << ", which is not below its upper limit " << joint->limits->upper;
-    throw core::Error(text.str());
-  }
-}
-
 /// @param reason set to what the parser complained of.
-urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason) {
-  const std::string xml = core::readFile(path, core::kMaxTextBytes);
+urdf::ModelInterfaceSharedPtr parse(const std::string& xml, const std::string& path, std::string& reason) {
   if (xml.find("<xacro:") != std::string::npos) {
-    throw core::Error(path + ": needs xacro; expand it first: xacro FILE > FILE.urdf");
+    throw core::Error(path + ": is a xacro file, not a URDF; run xacro first (xacro robot.urdf.xacro > robot.urdf)");
   }
   checkDepth(xml, path);
   Complaints complaints;
@@ -101,20 +90,21 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path, std::string& reason
     throw core::Error(path + ": not a valid URDF: " + (reason.empty() ? "no root link" : core::excerpt(reason, 300)));
   }
   checkTree(*model, path);
-  checkLimits(*model, path);
   return model;
 }
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::string& source) {
   std::string reason;
-  return parse(path, reason);
+  return parse(xml, source, reason);
 }
+
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) { return parseUrdf(core::readFile(path, core::kMaxTextBytes), path); }
 
 urdf::ModelInterfaceSharedPtr loadWholeUrdf(const std::string& path) {
   std::string reason;
-  urdf::ModelInterfaceSharedPtr model = parse(path, reason);
+  urdf::ModelInterfaceSharedPtr model = parse(core::readFile(path, core::kMaxTextBytes), path, reason);
   if (reason.empty()) return model;
   throw core::Error(path + ": a part cannot be read: " + core::excerpt(reason, 300) +
                     "; shapes are box, cylinder, sphere and mesh, with positive sizes");

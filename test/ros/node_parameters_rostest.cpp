@@ -15,6 +15,7 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
+#include "early_fusion/ros/virtual_robot/virtual_robot_node.h"
 #include "learning/small_session.h"
 
 namespace early_fusion::nodes {
@@ -63,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
         Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
         Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
+        Case{"virtual_robot_node", {"_encoding:=jpeg"}, {"encoding", "jpeg", "bgr8 | rgb8"}},
         Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
 
 TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
@@ -96,6 +98,18 @@ TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
   while (!is_up()) ASSERT_FALSE(node.ends(0.05)) << node.output();
 }
 
+TEST(NodeStart, SaysThatSimulatedTimeStandsStill) {
+  ::ros::init(::ros::M_string(), "node_parameters");
+  const SmallSession files;
+  ::ros::param::set("/use_sim_time", true);
+  ChildProcess node({std::string(EARLY_FUSION_NODES) + "/pan_tilt_driver_node", "__name:=timeless"}, {},
+                    files.path("log"));
+  while (node.output().find("/use_sim_time is true") == std::string::npos) {
+    ASSERT_FALSE(node.ends(0.1)) << node.output();
+  }
+  ::ros::param::del("/use_sim_time");
+}
+
 /// Checks the --help of the program `name` against the options that its node has.
 template <class Node>
 void expectHelp(const std::string& name) {
@@ -125,6 +139,7 @@ TEST(NodeHelp, ListsEveryParameterOfEveryNodeWithRangeUnitAndDefault) {
   expectHelp<RequestNode>("request_node");
   expectHelp<PanTiltDriverNode>("pan_tilt_driver_node");
   expectHelp<SessionMonitorNode>("session_monitor_node");
+  expectHelp<VirtualRobotNode>("virtual_robot_node");
 }
 
 }  // namespace

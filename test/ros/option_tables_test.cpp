@@ -16,6 +16,7 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
+#include "early_fusion/ros/virtual_robot/virtual_robot_node.h"
 #include "early_fusion/sim/task.h"
 #include "early_fusion/world/world.h"
 
@@ -158,6 +159,7 @@ TEST(OptionTables, RosHasEveryParameterOfEveryNode) {
   expectParameters<SessionMonitorNode>("## session_monitor_node");
   expectParameters<RequestNode>("## A real camera");
   expectParameters<PanTiltDriverNode>("## A real camera");
+  expectParameters<VirtualRobotNode>("## virtual_robot_node");
   EXPECT_TRUE(tablesIn(section(document("ros.md"), "## simulator_node")).count("diagnostic_period"));
 }
 
@@ -168,7 +170,8 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
        {optionsOf<SimulatorNode::Options>(), optionsOf<PolicyNode::Options>(), optionsOf<TrainerNode::Options>(),
         optionsOf<EvaluatorNode::Options>(), optionsOf<SessionMonitorNode::Options>(),
         optionsOf<RequestNode::Options>(), optionsOf<learning::RetentionOptions>(),
-        optionsOf<PanTiltDriverNode::Options>(), optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
+        optionsOf<PanTiltDriverNode::Options>(), optionsOf<VirtualRobotNode::Options>(), optionsOf<sim::Task>(),
+        optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }
   for (const core::Option& option : all) {

@@ -22,6 +22,19 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
   return message;
 }
 
+geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
+  const Eigen::Quaterniond rotation(transform.linear());
+  geometry_msgs::Pose pose;
+  pose.position.x = transform.translation().x();
+  pose.position.y = transform.translation().y();
+  pose.position.z = transform.translation().z();
+  pose.orientation.x = rotation.x();
+  pose.orientation.y = rotation.y();
+  pose.orientation.z = rotation.z();
+  pose.orientation.w = rotation.w();
+  return pose;
+}
+
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
   const sim::Task task = sim::withUpTo(goal.max_instances, sim::loadTask(goal.task));
   const std::string pairs = goal.pairs.empty() ? "all" : goal.pairs;

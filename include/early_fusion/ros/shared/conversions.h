@@ -4,10 +4,12 @@
 #include <early_fusion/Request.h>
 #include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
+#include <geometry_msgs/Pose.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,8 @@
 
 namespace early_fusion::nodes {
 
+geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
+
 /// The first episode of a goal. @throws core::Error as sim::loadTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
@@ -29,6 +33,7 @@ learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal);
 /// The expert that labels a goal's episodes, and drives where the goal says so. @throws core::Error naming the known
 /// ones.
 learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
+
 /// Sets the requests of a goal's episodes to those of the task.
 void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
 
