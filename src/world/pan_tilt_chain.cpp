@@ -18,6 +18,14 @@ urdf::JointConstSharedPtr findJoint(const urdf::ModelInterface& model, const std
   throw core::Error(file + ": no joint '" + name + "'; its joints are: " + (known.empty() ? "none" : known));
 }
 
+bool hangsFrom(const urdf::ModelInterface& model, const urdf::Joint& joint, const std::string& ancestor) {
+  for (auto parent = model.getLink(joint.parent_link_name)->parent_joint; parent;
+       parent = model.getLink(parent->parent_link_name)->parent_joint) {
+    if (parent->name == ancestor) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double PanTiltChain::turnsLeft(double tilt_rad) const {
@@ -38,6 +46,10 @@ PanTiltChain readPanTiltChain(const urdf::ModelInterface& model, const std::stri
   chain.pan = findJoint(model, pan_joint, file);
   chain.tilt = findJoint(model, tilt_joint, file);
   if (!model.getLink(optical_frame)) throw core::Error(file + ": no link '" + optical_frame + "'");
+  if (hangsFrom(model, *chain.pan, tilt_joint)) {
+    throw core::Error(file + ": the pan joint '" + pan_joint + "' hangs from the tilt joint '" + tilt_joint +
+                      "'; exchange them");
+  }
   chain.pan_from_tilt =
       fixedChain(model, chain.pan->child_link_name, chain.tilt->parent_link_name, "joint '" + pan_joint + "'", file) *
       toEigen(chain.tilt->parent_to_joint_origin_transform);

@@ -157,8 +157,8 @@ TEST(OptionTables, RosHasEveryParameterOfEveryNode) {
   expectParameters<TrainerNode>("## trainer_node", optionsOf<learning::SessionOptions>());
   expectParameters<EvaluatorNode>("## evaluator_node");
   expectParameters<SessionMonitorNode>("## session_monitor_node");
-  expectParameters<RequestNode>("## A real camera");
-  expectParameters<PanTiltDriverNode>("## A real camera");
+  expectParameters<RequestNode>("## request_node");
+  expectParameters<PanTiltDriverNode>("## pan_tilt_driver_node");
   expectParameters<VirtualRobotNode>("## virtual_robot_node");
   EXPECT_TRUE(tablesIn(section(document("ros.md"), "## simulator_node")).count("diagnostic_period"));
 }

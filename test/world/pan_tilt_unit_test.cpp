@@ -47,7 +47,7 @@ TEST(PanTiltUnit, AUnitThatHangsUpsideDownTurnsByWhatItsImageShows) {
   EXPECT_EQ(hanging.tilt.sign, 1);
   // Only the camera is turned about its optical axis, so that its image is upright again.
   const PanTiltUnit upright =
-      parse(R"(rpy="-1.570796326794897 0 -1.570796326794897")", R"(rpy="1.570796326794897 0 -1.570796326794897")");
+      parse(R"(rpy="-1.570796326794897 0 -1.570796326794897")", R"(rpy="1.570796326794897 0 1.570796326794897")");
   EXPECT_EQ(upright.pan.sign, -1);
   EXPECT_EQ(upright.tilt.sign, -1);
 }
@@ -95,6 +95,10 @@ TEST(PanTiltUnit, SaysWhatIsWrongWithAJoint) {
   EXPECT_NE(errorOfUnit(kPanJoint, R"(<joint name="pan_joint" type="prismatic">)").find("revolute or continuous"),
             std::string::npos);
   EXPECT_NE(errorOfUnit(kPanJoint, R"(<joint name="neck" type="revolute">)").find("no joint 'pan_joint'; its joints"),
+            std::string::npos);
+  EXPECT_NE(errorOf([] {
+              PanTiltUnit::parse(kRigUrdf, "the unit", "tilt_joint", "pan_joint", "eye");
+            }).find("the pan joint 'tilt_joint' hangs from the tilt joint 'pan_joint'; exchange them"),
             std::string::npos);
   EXPECT_NE(errorOfUnit(kPanAxis, R"(<axis xyz="0 1 0"/>)").find("does not turn the camera left or right"),
             std::string::npos);
