@@ -3,8 +3,10 @@
 #include "command.h"
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/stop_signals.h"
+#include "early_fusion/core/thread_waiting.h"
 
 int main(int argc, char** argv) {
+  early_fusion::core::waitWithoutSpinning(argv);
   CLI::App app(
       "Trains, scores and shows policies that point a pan-tilt camera at requested objects and collect them\n"
       "(Walsman et al., \"Early Fusion for Goal Directed Robotic Vision\", IROS 2019), without ROS.");

@@ -4,13 +4,35 @@
 
 #include <algorithm>
 
+#include "early_fusion/nn/frame_stack.h"
+
 namespace early_fusion::model {
+
+namespace {
+
+// Multiply-adds of a frame that one thread computes alone, in a few milliseconds. More threads would gain little and
+// cost processor time, and on a busy machine they would wait for each other.
+constexpr double kWorkOfOneThread = 150e6;
+
+/// Multiply-adds of the convolutions of one frame.
+double workOf(const VisionTrunkShape& shape) {
+  double work = 0;
+  for (int block = 0; block < kBlocks; ++block) {
+    const double edge = shape.image_size >> block;
+    const int in_channels = block == 0 ? nn::kImageChannels : shape.channels;
+    work += edge * edge * 9 * in_channels * shape.channels;
+  }
+  return work;
+}
+
+}  // namespace
 
 NetworkPolicy::NetworkPolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed,
                              const VisionTrunkShape& trunk_shape, int feature_count)
     : options_(options),
       vocabulary_(vocabulary),
       threads_(omp_get_max_threads()),
+      frame_thread_(workOf(trunk_shape) > kWorkOfOneThread ? VisionTrunk::kAllThreads : 0),
       trunk_(makeVisionTrunk(parameters_, trunk_shape, options.precision, threads_)),
       encoder_(parameters_, vocabulary.size(), options.channels, threads_),
       head_(parameters_, {feature_count, options.channels, options.dropout}, threads_),
@@ -54,7 +76,7 @@ void NetworkPolicy::predictFeatures(const Observation& observation) {
   reservePrediction(1);
   countItems(observation, 0, vocabulary_.size(), predict_counts_.data());
   refreshInference();
-  predictFeatures(0, observation, VisionTrunk::kAllThreads, thread_features_.data());
+  predictFeatures(0, observation, frame_thread_, thread_features_.data());
 }
 
 template <class Use>

@@ -272,6 +272,21 @@ TEST_F(CommandLine, AStoppedTrainingSaysWhatIsKeptAndHowToGoOn) {
   EXPECT_TRUE(nn::WeightsFile::read(folder + "/checkpoint.safetensors").has_digest);
 }
 
+TEST_F(CommandLine, ThreadsSleepSoonUnlessTheUserSaysHowTheyWait) {
+  // What OpenMP's runtime says last of the iterations after which a waiting thread sleeps.
+  const auto spins = [&](const std::string& variables) {
+    const std::string command = "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=verbose " + variables +
+                                " " EARLY_FUSION_PROGRAM " inspect --task simple >" + path("out") + " 2>" + path("err");
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    const std::string text = core::readFile(path("err"));
+    const std::size_t at = text.rfind("GOMP_SPINCOUNT = ");
+    return at == std::string::npos ? "not said" : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(spins(""), "GOMP_SPINCOUNT = '1000'");
+  EXPECT_EQ(spins("GOMP_SPINCOUNT=77"), "GOMP_SPINCOUNT = '77'");
+  EXPECT_EQ(spins("OMP_WAIT_POLICY=passive"), "GOMP_SPINCOUNT = '0'");
+}
+
 TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   for (const char* arguments : {" inspect --task simple", " evaluate --policy idle --episodes 1 --json -"}) {
     const std::string command = EARLY_FUSION_PROGRAM + std::string(arguments) + " >/dev/full 2>" + path("err");

@@ -38,7 +38,7 @@ class NetworkPolicy : public TrainablePolicy {
   VisionTrunk& trunk() { return *trunk_; }
   int threads() const { return threads_; }
 
-  /// predictRow() of the observation with all threads, for what a kind keeps of it.
+  /// predictRow() of the observation, for what a kind keeps of it.
   void predictFeatures(const Observation& observation);
 
   /// Makes room for rows. The matrix may lose what it held.
@@ -72,6 +72,7 @@ class NetworkPolicy : public TrainablePolicy {
   PolicyOptions options_;
   core::Vocabulary vocabulary_;
   int threads_;
+  int frame_thread_;  // predictRow()'s `thread` for a single observation
   nn::Parameters parameters_;
   std::unique_ptr<VisionTrunk> trunk_;
   RequestEncoder encoder_;

@@ -12,6 +12,7 @@
 #include <exception>
 #include <iostream>
 
+#include "early_fusion/core/thread_waiting.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -53,6 +54,7 @@ constexpr double kClockPatienceSec = 3;
 
 int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
             const std::function<void()>& run) {
+  core::waitWithoutSpinning(argv);
   if (wantsHelp(argc, argv)) {
     std::cout << name << "_node [_parameter:=value ...] [topic:=other_topic ...]\nPrivate parameters:\n"
               << describeParameters(options);
