@@ -9,13 +9,7 @@ import csv
 import os
 import sys
 
-try:
-    import matplotlib
-except ImportError:
-    sys.exit("plot_curves.py needs matplotlib: sudo apt install python3-matplotlib")
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "early_fusion"  # the same bytes every time
-from matplotlib import pyplot  # noqa: E402
+from figures import draw_mean, pyplot, save
 
 
 def read_run(argument):
@@ -43,12 +37,7 @@ def draw(axes, runs, across, scale, column, width):
     shortest = min(len(run[column]) for run in runs)
     lines = [smoothed(run[column], width)[:shortest] for run in runs]
     x = [sum(run[across][i] for run in runs) / len(runs) / scale for i in range(shortest)]
-    mean = [sum(values) / len(values) for values in zip(*lines)]
-    line, = axes.plot(x, mean, linewidth=1.3)
-    if len(runs) > 1:
-        axes.fill_between(x, list(map(min, zip(*lines))), list(map(max, zip(*lines))), alpha=0.2,
-                          color=line.get_color(), linewidth=0)
-    return line
+    return draw_mean(axes, x, list(zip(*lines)))
 
 
 def main():
@@ -71,7 +60,7 @@ def main():
             axes.set_xlim(left=0)
         row[0].set_ylabel(title)
     rows[0][0].legend(lines, groups, frameon=False)
-    figure.savefig(options.out, metadata={"Date": None} if options.out.endswith(".svg") else None)
+    save(figure, options.out)
 
 
 if __name__ == "__main__":

@@ -18,13 +18,14 @@ esac
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libcli11-dev libdnnl-dev libeigen3-dev
-  libmeshoptimizer-dev libopencv-dev liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev)
-debian_ros=(catkin libactionlib-dev libcv-bridge-dev libdiagnostic-updater-dev libimage-transport-dev
-  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libvisualization-msgs-dev
+  libmeshoptimizer-dev libopencv-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev)
+debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport-dev
+  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libtf2-ros-dev
+  libtrajectory-msgs-dev libvisualization-msgs-dev
   python3-actionlib python3-diagnostic-msgs python3-rosbag ros-actionlib-msgs ros-core ros-diagnostic-msgs
   ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs ros-trajectory-msgs
   ros-visualization-msgs rosbash)
-for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-pil python3-rostest)
+for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-matplotlib python3-pil python3-rostest)
 
 # Installs the missing ones of the given Debian packages and prints their names.
 install_missing() {

@@ -16,7 +16,7 @@ esac
 arguments=()
 for argument in "$@"; do
   case "$argument" in
-    output:=* | *:=*.yaml) argument="${argument%%:=*}:=$(realpath -m "${argument#*:=}")" ;;
+    output:=* | *:=*.yaml | from:=?*) argument="${argument%%:=*}:=$(realpath -m "${argument#*:=}")" ;;
   esac
   arguments+=("$argument")
 done

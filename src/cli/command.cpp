@@ -2,45 +2,39 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <iostream>
-
-#include "early_fusion/core/file.h"
-
 namespace early_fusion::cli {
 
-void addOptionFlags(CLI::App& command, const core::OptionSet& set, core::GivenOptions& given) {
-  for (const core::Option& option : set.options()) {
-    std::string flag = "--" + option.name;
-    std::replace(flag.begin(), flag.end(), '_', '-');
+void addCommands(CLI::App& app) {
+  addTrain(app);
+  addEvaluate(app);
+  addExperiment(app);
+  addDifficulty(app);
+  addRender(app);
+  addRetention(app);
+  addInspect(app);
+  addUrdf(app);
+}
+
+void addOptionFlags(CLI::App& command, const std::shared_ptr<core::OptionSet>& set, core::GivenOptions& given) {
+  for (const core::Option& option : set->options()) {
     const std::string unit = option.unit.empty() ? "" : " " + option.unit;
-    const std::string group = "Options of the " + set.title();
+    const std::string group = "Options of the " + set->title();
+    const auto give = [set, &given, name = option.name](const std::string& value) {
+      set->set(name, value, "command line");
+      given.emplace_back(name, value);
+    };
     if (option.isSwitch()) {
       command
           .add_flag_function(
-              flag,
-              [&given, name = option.name](std::int64_t count) {
-                given.emplace_back(name, count > 0 ? "true" : "false");
-              },
+              option.flag(), [give](std::int64_t count) { give(count > 0 ? "true" : "false"); },
               option.help + " [" + option.initial + "]")
           ->group(group);
       continue;
     }
-    command
-        .add_option_function<std::string>(
-            flag, [&given, name = option.name](const std::string& value) { given.emplace_back(name, value); },
-            option.help + ". " + option.range + unit)
+    command.add_option_function<std::string>(option.flag(), give, option.help + ". " + option.range + unit)
         ->type_name("")
         ->default_str(option.initial)
         ->group(group);
-  }
-}
-
-void writeTo(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    std::cout << text << std::flush;
-  } else {
-    core::writeFileAtomically(file, text);
   }
 }
 

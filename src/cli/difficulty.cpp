@@ -17,7 +17,18 @@ struct DifficultyOptions {
   std::string world;
   int episodes = 10000;
   std::uint64_t seed = learning::kHeldOutSeed;
+
+  /// Those with one value each.
+  core::OptionSet options();
 };
+
+core::OptionSet DifficultyOptions::options() {
+  core::OptionSet set("measurement");
+  set.add("episodes", episodes, 1, 1000000, "", "how many of each task");
+  set.add("seed", seed, "which episodes; the default's are held out from all training");
+  set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
+  return set;
+}
 
 /// Shows how far the measurement is, and the time left, on a terminal.
 class ProgressLine {
@@ -75,13 +86,13 @@ void addDifficulty(CLI::App& app) {
   const auto options = std::make_shared<DifficultyOptions>();
   command->add_option("--task", options->tasks, "one or more of simple, medium, hard, or a task's YAML file")
       ->capture_default_str();
-  command->add_option("--episodes", options->episodes, "how many of each task")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "which episodes; the default's are held out from all training")
-      ->capture_default_str();
-  command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package");
-  command->callback([options] { measure(*options); });
+  const auto given = std::make_shared<core::GivenOptions>();
+  addOptionFlags<DifficultyOptions>(*command, *given);
+  command->callback([options, given] {
+    core::OptionSet set = options->options();
+    for (const auto& [name, value] : *given) set.set(name, value, "command line");
+    measure(*options);
+  });
 }
 
 }  // namespace early_fusion::cli

@@ -11,9 +11,16 @@ namespace early_fusion::cli {
 
 namespace {
 
-void inspectWeights(const std::string& path) {
-  const nn::WeightsFile file = nn::WeightsFile::read(path);
-  std::cout << "metadata\n";
+struct InspectOptions {
+  std::string weights;
+  std::string rewritten;
+  std::string task;
+  std::string world;
+};
+
+void printWeights(const nn::WeightsFile& file) {
+  std::cout << "digest: " << (file.has_digest ? "right" : "none; --rewrite FILE writes the same contents with one")
+            << "\nmetadata\n";
   for (const auto& [key, value] : file.metadata) {
     const bool block = value.find('\n') != std::string::npos;
     std::cout << "  " << key << ":" << (block ? "\n" : " ");
@@ -33,6 +40,12 @@ void inspectWeights(const std::string& path) {
     for (std::size_t i = 0; i < tensor.shape.size(); ++i) std::cout << (i ? ", " : "") << tensor.shape[i];
     std::cout << ")\n";
   }
+}
+
+void inspectWeights(const std::string& path, const std::string& rewritten) {
+  const nn::WeightsFile file = nn::WeightsFile::read(path);
+  if (!rewritten.empty()) file.write(rewritten);
+  printWeights(file);
 }
 
 void inspectTask(const std::string& name) { std::cout << sim::loadTask(name).options().toYaml(); }
@@ -58,13 +71,23 @@ void addInspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand("inspect",
                                          "Print the contents of weights, a checkpoint, a task or a world.\n"
                                          "Example: early_fusion inspect models/simple.safetensors");
-  command->require_option(1);
-  command->add_option_function<std::string>("weights", inspectWeights, "a weights file or a checkpoint");
-  command->add_option_function<std::string>("--task", inspectTask, "simple, medium, hard, or a task's YAML file");
-  command
-      ->add_option_function<std::string>("--world", inspectWorld,
-                                         "a world's YAML file; default: config/world.yaml of the package")
-      ->expected(0, 1);
+  const auto options = std::make_shared<InspectOptions>();
+  CLI::Option* weights =
+      command->add_option("weights", options->weights, "a weights file or a checkpoint; an error if it is damaged");
+  CLI::Option* task = command->add_option("--task", options->task, "simple, medium, hard, or a task's YAML file");
+  CLI::Option* world =
+      command->add_option("--world", options->world, "a world's YAML file; default: config/world.yaml of the package")
+          ->expected(0, 1);
+  command->add_option("--rewrite", options->rewritten, "write the weights to this file, with a digest of all its bytes")
+      ->needs(weights);
+  weights->excludes(task)->excludes(world);
+  task->excludes(world);
+  command->require_option(1, 2);
+  command->callback([=] {
+    if (weights->count() > 0) inspectWeights(options->weights, options->rewritten);
+    if (task->count() > 0) inspectTask(options->task);
+    if (world->count() > 0) inspectWorld(options->world);
+  });
 }
 
 }  // namespace early_fusion::cli

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "command.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/file.h"
 #include "early_fusion/core/image_size.h"
+#include "early_fusion/core/output_file.h"
 #include "early_fusion/learning/evaluation.h"
 #include "images.h"
 #include "named_agent.h"
@@ -48,22 +51,22 @@ core::OptionSet RenderOptions::options() {
   return set;
 }
 
-void writePng(const std::string& file, const core::Image& image) {
+std::string png(const core::Image& image) {
   const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  writeTo(file, std::string(png.begin(), png.end()));
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return std::string(bytes.begin(), bytes.end());
 }
 
 /// Writes the steps to `folder`, numbered so that their names are in order.
 void writeSteps(const std::string& folder, const std::vector<core::Image>& steps) {
-  if (folder == "-") throw core::Error("--out: '-' is standard output, but --image steps needs a folder");
   const std::size_t digits = std::max<std::size_t>(2, std::to_string(steps.size() - 1).size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::string number = std::to_string(i);
-    writePng(folder + "/step_" + std::string(digits - number.size(), '0') + number + ".png", steps[i]);
+    const std::string name = "/step_" + std::string(digits - number.size(), '0') + number + ".png";
+    core::writeFileAtomically(folder + name, png(steps[i]));
   }
 }
 
@@ -84,25 +87,39 @@ std::vector<PlayedStep> play(const RenderOptions& options, const world::World& w
   return played;
 }
 
-void render(const RenderOptions& options) {
-  const auto world = world::loadWorld(options.world);
-  const ImageStyle style{options.size, options.scale, options.annotate};
-  if (options.image == "objects") {
-    writePng(options.out, drawObjects(*world, style));
-    return;
+/// Makes the folder for --image steps. @throws Error if it cannot be one.
+void makeFolder(const std::string& folder) {
+  if (folder == "-") throw core::Error("--out: '-' is standard output, but --image steps needs a folder");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder, error)) {
+    throw core::Error("--out: cannot make the folder " + folder + " for --image steps: " + error.message());
   }
+}
+
+/// @return the image that RenderOptions::image asks for, not "steps".
+core::Image draw(const RenderOptions& options, const world::World& world, const sim::Task& task,
+                 const ImageStyle& style) {
+  if (options.image == "objects") return drawObjects(world, style);
+  const std::vector<PlayedStep> played = play(options, world, task);
+  if (options.image == "episode") return drawEpisode(world, played, style);
+  return drawSteps(world, {played[options.step]}, style).front();
+}
+
+void render(const RenderOptions& options) {
   const sim::Task task = sim::loadTask(options.task);
   if (options.step >= task.steps) {
     throw core::Error("--step: " + std::to_string(options.step) + " is after the task's last step, " +
                       std::to_string(task.steps - 1));
   }
-  const std::vector<PlayedStep> played = play(options, *world, task);
-  if (options.image == "episode") {
-    writePng(options.out, drawEpisode(*world, played, style));
-  } else if (options.image == "steps") {
-    writeSteps(options.out, drawSteps(*world, played, style));
+  const ImageStyle style{options.size, options.scale, options.annotate};
+  if (options.image == "steps") {
+    makeFolder(options.out);
+    const auto world = world::loadWorld(options.world);
+    writeSteps(options.out, drawSteps(*world, play(options, *world, task), style));
   } else {
-    writePng(options.out, drawSteps(*world, {played[options.step]}, style).front());
+    core::OutputFile out("--out", options.out);
+    out.write(png(draw(options, *world::loadWorld(options.world), task, style)));
   }
 }
 
@@ -114,7 +131,7 @@ void addRender(CLI::App& app) {
       "Draw what the camera sees as PNG files.\n"
       "Example: early_fusion render --task hard --seed 3 --step 10 --size 512 --annotate --out step.png");
   const auto given = std::make_shared<core::GivenOptions>();
-  addOptionFlags(*command, RenderOptions().options(), *given);
+  addOptionFlags<RenderOptions>(*command, *given);
   command->get_option("--out")->required();
   command->callback([given] {
     RenderOptions options;

@@ -1,17 +1,19 @@
 #include "early_fusion/core/file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
+#include "descriptor.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
@@ -20,70 +22,81 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& doing) {
-  throw Error(path + ": cannot " + doing + ": " + std::strerror(errno));
-}
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  Descriptor(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
-void writeAndSync(const std::string& path, const std::string& bytes) {
+/// Writes the file and syncs it. @param old the status of the file that it replaces; null if there is none.
+void writeAndSync(const std::string& path, const std::string& bytes, const struct stat* old) {
   const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
-  if (file.get() < 0) fail(path, "write");
-  std::size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t count = ::write(file.get(), bytes.data() + written, bytes.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "write");
-    written += static_cast<std::size_t>(count);
+  if (file.get() < 0) failWithErrno(path, "write");
+  if (old != nullptr) {
+    // Only root can keep another owner. The mode is set last, because a new owner clears some of its bits.
+    const bool same_owner = ::fchown(file.get(), old->st_uid, old->st_gid) == 0;
+    if (::fchmod(file.get(), old->st_mode & (same_owner ? 07777 : 0777)) != 0) failWithErrno(path, "set the mode");
   }
-  if (::fsync(file.get()) != 0) fail(path, "sync");
+  writeAll(file.get(), bytes, path);
+  if (::fsync(file.get()) != 0) failWithErrno(path, "sync");
 }
 
-}  // namespace
-
-std::string readFile(const std::string& path) {
-  const Descriptor file(path, O_RDONLY);
-  if (file.get() < 0) fail(path, "read");
+std::string read(const std::string& path, std::size_t max_bytes) {
+  // Without O_NONBLOCK, opening a FIFO would wait for a writer.
+  const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+  if (file.get() < 0) failWithErrno(path, "read");
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) failWithErrno(path, "read");
+  if (S_ISDIR(status.st_mode)) throw Error(path + ": cannot read: it is a folder");
+  if (!S_ISREG(status.st_mode)) throw Error(path + ": cannot read: it is not a regular file");
+  const std::string too_large = path + ": cannot read: it has more than " + std::to_string(max_bytes) + " bytes";
+  if (static_cast<std::size_t>(status.st_size) > max_bytes) throw Error(too_large);
   std::string contents;
+  contents.reserve(static_cast<std::size_t>(status.st_size));
   std::array<char, 65536> block;
   for (;;) {
     const ssize_t count = ::read(file.get(), block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "read");
+    if (count < 0) failWithErrno(path, "read");
     if (count == 0) return contents;
     contents.append(block.data(), static_cast<std::size_t>(count));
+    if (contents.size() > max_bytes) throw Error(too_large);  // a file of /proc has size 0
   }
 }
 
+}  // namespace
+
+std::string readFile(const std::string& path, std::size_t max_bytes) {
+  return namingOutOfMemory(path, [&] { return read(path, max_bytes); });
+}
+
 void writeFileAtomically(const std::string& path, const std::string& bytes) {
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string target = followLinks(path);
+  const fs::path parent = fs::path(target).parent_path();
+  const fs::path folder = parent.empty() ? fs::path(".") : parent;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(path + ": cannot create the folder " + folder.string() + ": " + error.message());
-  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
+  struct stat old {};
+  const bool replaces = ::stat(target.c_str(), &old) == 0;
+  if (replaces && !S_ISREG(old.st_mode)) throw Error(path + ": cannot replace it: it is not a regular file");
+  const std::string temporary = target + ".tmp" + std::to_string(::getpid());
   try {
-    writeAndSync(temporary, bytes);
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "replace it by the new file");
+    writeAndSync(temporary, bytes, replaces ? &old : nullptr);
+    if (::rename(temporary.c_str(), target.c_str()) != 0) failWithErrno(path, "replace it by the new file");
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
   }
   const Descriptor directory(folder.string(), O_RDONLY | O_DIRECTORY);
   if (directory.get() >= 0) ::fsync(directory.get());
+}
+
+void removeTemporaryFiles(const std::string& path) {
+  const fs::path target(path);
+  const std::string start = target.filename().string() + ".tmp";
+  std::error_code ignored;  // a file that stays does no harm
+  for (const auto& entry : fs::directory_iterator(target.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    const bool digits = name.find_first_not_of("0123456789", start.size()) == std::string::npos;
+    if (name.size() > start.size() && name.compare(0, start.size(), start) == 0 && digits) {
+      fs::remove(entry.path(), ignored);
+    }
+  }
 }
 
 std::string resolvePath(const std::string& base_file, const std::string& path) {
@@ -116,7 +129,7 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
     if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  throw Error("'" + name_or_file + "' is neither one of the known " + folder + " (" + joined(known) +
+  throw Error("'" + excerpt(name_or_file) + "' is neither one of the known " + folder + " (" + joined(known) +
               ") nor a .yaml file");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 
 namespace early_fusion::core {
 
@@ -14,7 +15,7 @@ std::string joined(const std::vector<std::string>& names, const std::string& sep
 
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind) {
   const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) throw Error("unknown " + kind + " '" + name + "'; known are " + joined(known));
+  if (found == known.end()) throw Error("unknown " + kind + " '" + excerpt(name) + "'; known are " + joined(known));
   return static_cast<int>(found - known.begin());
 }
 

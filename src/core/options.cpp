@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
 
@@ -36,6 +37,12 @@ std::string position(const YAML::Node& node, const std::string& file) {
 }
 
 }  // namespace
+
+std::string Option::flag() const {
+  std::string flag = "--" + name;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
 
 void OptionSet::add(const std::string& name, int& field, int low, int high, const std::string& unit,
                     const std::string& help) {
@@ -119,12 +126,12 @@ void OptionSet::set(const std::string& name, const std::string& text, const std:
   if (option == options_.end()) {
     std::vector<std::string> known;
     for (const Option& candidate : options_) known.push_back(candidate.name);
-    throw Error(source + ": unknown " + title_ + " option '" + name + "'; known are " + joined(known));
+    throw Error(source + ": unknown " + title_ + " option '" + excerpt(name) + "'; known are " + joined(known));
   }
   try {
     option->set(text);
   } catch (const Error& error) {
-    throw Error(source + ": " + name + ": '" + text + "' " + error.what() + "; allowed: " + option->range +
+    throw Error(source + ": " + name + ": '" + excerpt(text) + "' " + error.what() + "; allowed: " + option->range +
                 (option->unit.empty() ? "" : " " + option->unit));
   }
 }
@@ -140,8 +147,9 @@ void OptionSet::setFromYaml(const YAML::Node& map, const std::string& file) {
     const std::string where = position(entry.first, file);
     if (!entry.first.IsScalar()) throw Error(where + ": an option's name must be plain text");
     const std::string name = entry.first.Scalar();
-    if (!entry.second.IsScalar()) throw Error(where + ": " + name + ": expected a single value");
-    if (std::find(seen.begin(), seen.end(), name) != seen.end()) throw Error(where + ": " + name + " is given twice");
+    if (!entry.second.IsScalar()) throw Error(where + ": " + excerpt(name) + ": expected a single value");
+    if (std::find(seen.begin(), seen.end(), name) != seen.end())
+      throw Error(where + ": " + excerpt(name) + " is given twice");
     seen.push_back(name);
     set(name, entry.second.Scalar(), where);
   }
@@ -149,9 +157,9 @@ void OptionSet::setFromYaml(const YAML::Node& map, const std::string& file) {
 
 YAML::Node loadYamlFile(const std::string& file) {
   try {
-    return YAML::Load(readFile(file));
+    return namingOutOfMemory(file, [&] { return YAML::Load(readFile(file, kMaxTextBytes)); });
   } catch (const YAML::Exception& error) {
-    throw Error(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + error.msg);
+    throw Error(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + excerpt(error.msg));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 
 namespace early_fusion::core {
@@ -16,7 +17,7 @@ Vocabulary::Vocabulary(std::vector<std::string> names) : names_(std::move(names)
   std::set<std::string> seen;
   for (const std::string& name : names_) {
     if (name.empty()) throw Error("an item's name is empty");
-    if (!seen.insert(name).second) throw Error("the item '" + name + "' is listed twice");
+    if (!seen.insert(name).second) throw Error("the item '" + excerpt(name) + "' is listed twice");
   }
 }
 

@@ -16,8 +16,11 @@ double mean(const std::vector<EpisodeOutcome>& outcomes, Measure measure) {
 
 }  // namespace
 
-Evaluation::Evaluation(std::string policy_name, std::string task_name, std::uint64_t episodes_seed)
-    : policy(std::move(policy_name)), task(std::move(task_name)), seed(episodes_seed) {}
+Evaluation::Evaluation(std::string policy_name, const sim::Task& episodes_task, std::uint64_t episodes_seed)
+    : policy(std::move(policy_name)),
+      task(episodes_task.name),
+      pairs(sim::pairChoiceName(episodes_task.pairs)),
+      seed(episodes_seed) {}
 
 void Evaluation::add(const Trajectory& trajectory) {
   outcomes.push_back({trajectory.episode, trajectory.score, trajectory.agreement()});
@@ -43,6 +46,7 @@ std::string Evaluation::toJson() const {
   nlohmann::ordered_json json;
   json["policy"] = policy;
   json["task"] = task;
+  json["pairs"] = pairs;
   json["seed"] = seed;
   json["episodes"] = outcomes.size();
   json["f1"] = f1();
@@ -57,7 +61,8 @@ std::string Evaluation::toJson() const {
                                    {"recall", outcome.score.recall},
                                    {"agreement", outcome.agreement}});
   }
-  return json.dump(2) + "\n";
+  // A weights file's path may not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string Evaluation::summary() const {
@@ -69,7 +74,7 @@ std::string Evaluation::summary() const {
 
 Evaluation evaluate(RolloutRunner& runner, Agent& agent, int episodes, const std::string& policy_name,
                     const std::function<void(int)>& progress) {
-  Evaluation evaluation(policy_name, runner.task().name, runner.seed());
+  Evaluation evaluation(policy_name, runner.task(), runner.seed());
   runner.run(0, episodes, agent, false, [&](const Trajectory& trajectory) {
     evaluation.add(trajectory);
     if (progress) progress(static_cast<int>(evaluation.outcomes.size()));

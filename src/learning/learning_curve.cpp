@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 
 namespace early_fusion::learning {
 
@@ -26,7 +27,7 @@ LearningCurve LearningCurve::parse(const std::string& csv, const std::string& so
         std::sscanf(line.c_str(), "%" SCNu64 ",%" SCNu64 ",%lf,%lf,%lf,%lf,%lf", &round.round, &round.trajectories,
                     &round.loss, &round.learning_rate, &round.f1, &round.agreement, &point.elapsed_sec);
     if (number == 1 || read != 7) {
-      throw core::Error(source + ": learning curve, line " + std::to_string(number) + ": '" + line +
+      throw core::Error(source + ": learning curve, line " + std::to_string(number) + ": '" + core::excerpt(line) +
                         "' is not a line with the columns " + kHeader);
     }
     curve.add(point);

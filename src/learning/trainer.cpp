@@ -7,13 +7,15 @@
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/learning/checkpoint_tensors.h"
-#include "early_fusion/learning/training_samples.h"
 #include "early_fusion/model/policy_file.h"
 #include "early_fusion/model/policy_kinds.h"
+#include "early_fusion/model/warm_start.h"
 
 namespace early_fusion::learning {
 
 namespace {
+
+constexpr std::size_t kBytesPerMegabyte = 1000000;
 
 constexpr char kFirstMoment[] = "checkpoint.adam.first_moment";
 constexpr char kSecondMoment[] = "checkpoint.adam.second_moment";
@@ -31,16 +33,22 @@ nn::AdamOptions adamOptions(const TrainingOptions& options) {
 }  // namespace
 
 Trainer::Trainer(const model::PolicyOptions& policy, const TrainingOptions& training,
-                 const core::Vocabulary& vocabulary, std::uint64_t seed)
+                 const core::Vocabulary& vocabulary, std::uint64_t seed, Redraw redraw)
     : options_(training),
       seed_(seed),
       learner_(model::makePolicy(policy, vocabulary, seed)),
       ema_(training.weight_ema > 0 ? model::makePolicy(policy, vocabulary, seed) : nullptr),
-      adam_(learner_->parameters().values().size(), adamOptions(training)) {}
+      adam_(learner_->parameters().values().size(), adamOptions(training)),
+      window_(training.window, training.window_memory * kBytesPerMegabyte, std::move(redraw)) {}
+
+void Trainer::warmStart(const model::TrainablePolicy& trained, const std::string& source) {
+  model::warmStart(trained, source, *learner_);
+  if (ema_) model::warmStart(trained, source, *ema_);
+}
 
 void Trainer::add(Trajectory trajectory) {
-  window_.push_back(std::move(trajectory));
-  while (static_cast<int>(window_.size()) > options_.window) window_.pop_front();
+  dropUntrainedRequests(trajectory, options_);
+  window_.add(std::move(trajectory));
   ++trajectories_seen_;
   ++new_trajectories_;
 }
@@ -51,23 +59,34 @@ int Trainer::newInRound() const {
       std::min<std::int64_t>(options_.trajectories_per_round, options_.trajectories - before_round));
 }
 
-double Trainer::learningRate() const {
-  const double done = std::min(1.0, static_cast<double>(trajectories_seen_) / options_.trajectories);
-  const double cosine = 0.5 * (1 + std::cos(M_PI * done));
-  return options_.final_learning_rate + (options_.learning_rate - options_.final_learning_rate) * cosine;
+/// @param round_done the finished share of the round. It matters only if the policy restarts.
+double Trainer::learningRate(double round_done) const {
+  const double session_done = static_cast<double>(trajectories_seen_) / options_.trajectories;
+  return options_.learningRateAt(options_.restart_policy ? round_done : session_done);
 }
 
-std::vector<Trainer::FrameIndex> Trainer::drawFrames() const {
-  std::vector<FrameIndex> window_frames;
-  for (std::uint32_t t = 0; t < window_.size(); ++t) {
-    for (std::uint32_t s = 0; s < window_[t].steps.size(); ++s) {
-      if (isTrainedOn(window_[t].steps[s], options_)) window_frames.push_back({t, s});
+/// Forgets what the policy has learnt in earlier rounds. The first round's policy is new already.
+void Trainer::restartPolicy() {
+  if (rounds_ == 0) return;
+  const std::uint64_t seed = core::Random(seed_, {core::kRestartStream, rounds_}).next();
+  const auto fresh = [&] { return model::makePolicy(learner_->options(), learner_->vocabulary(), seed); };
+  if (ema_) ema_ = fresh();
+  learner_ = fresh();
+  adam_ = nn::Adam(learner_->parameters().values().size(), adamOptions(options_));
+}
+
+std::vector<TrainingWindow::Index> Trainer::drawFrames() const {
+  const std::deque<Trajectory>& window = window_.trajectories();
+  std::vector<TrainingWindow::Index> window_frames;
+  for (std::uint32_t t = 0; t < window.size(); ++t) {
+    for (std::uint32_t s = 0; s < window[t].steps.size(); ++s) {
+      if (isTrainedOn(window[t].steps[s], options_)) window_frames.push_back({t, s});
     }
   }
-  std::vector<FrameIndex> drawn;
+  std::vector<TrainingWindow::Index> drawn;
   double epochs_left = options_.epochs;
   for (std::uint64_t epoch = 0; epochs_left > 0; ++epoch, epochs_left -= 1) {
-    std::vector<FrameIndex> order = window_frames;
+    std::vector<TrainingWindow::Index> order = window_frames;
     core::Random(seed_, {core::kShuffleStream, rounds_, epoch}).shuffle(order);
     const auto count = static_cast<std::size_t>(std::lround(std::min(1.0, epochs_left) * order.size()));
     drawn.insert(drawn.end(), order.begin(), order.begin() + count);
@@ -79,30 +98,27 @@ RoundStatistics Trainer::rolloutStatistics() const {
   RoundStatistics statistics;
   statistics.round = rounds_ + 1;
   statistics.trajectories = trajectories_seen_;
-  const std::size_t count = std::min<std::size_t>(new_trajectories_, window_.size());
-  for (std::size_t i = window_.size() - count; i < window_.size(); ++i) {
-    statistics.f1 += window_[i].score.f1 / count;
-    statistics.agreement += window_[i].agreement() / count;
+  const std::deque<Trajectory>& window = window_.trajectories();
+  const std::size_t count = std::min<std::size_t>(new_trajectories_, window.size());
+  for (std::size_t i = window.size() - count; i < window.size(); ++i) {
+    statistics.f1 += window[i].score.f1 / count;
+    statistics.agreement += window[i].agreement() / count;
   }
   return statistics;
 }
 
 RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress) {
   RoundStatistics statistics = rolloutStatistics();
-  statistics.learning_rate = learningRate();
-  const ClassWeights weights = classWeights(window_, options_);
-  const std::vector<FrameIndex> frames = drawFrames();
-  std::vector<model::Sample> batch;
+  statistics.learning_rate = learningRate(0);
+  if (options_.restart_policy) restartPolicy();
+  const ClassWeights weights = classWeights(window_.trajectories(), options_);
+  const std::vector<TrainingWindow::Index> frames = drawFrames();
   std::uint64_t steps = 0;
   for (std::size_t first = 0; first < frames.size(); first += options_.batch_size) {
     const std::size_t last = std::min(frames.size(), first + options_.batch_size);
-    batch.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      const std::vector<model::Sample> samples =
-          samplesOf(window_[frames[i].trajectory], frames[i].step, options_, weights);
-      batch.insert(batch.end(), samples.begin(), samples.end());
-    }
-    statistics.loss += trainStep(batch, core::Random(seed_, {core::kDropoutStream, rounds_, first}).next());
+    const std::vector<model::Sample> batch = makeBatch({frames.begin() + first, frames.begin() + last}, weights);
+    statistics.loss += trainStep(batch, learningRate(static_cast<double>(first) / frames.size()),
+                                 core::Random(seed_, {core::kDropoutStream, rounds_, first}).next());
     ++steps;
     if (progress) progress(static_cast<double>(last) / frames.size());
   }
@@ -114,13 +130,26 @@ RoundStatistics Trainer::trainRound(const std::function<void(double)>& progress)
   return statistics;
 }
 
+/// @return samples whose frames are valid until the next call.
+std::vector<model::Sample> Trainer::makeBatch(const std::vector<TrainingWindow::Index>& frames,
+                                              const ClassWeights& weights) {
+  window_.loadFrames(frames);
+  std::vector<model::Sample> batch;
+  for (const TrainingWindow::Index& frame : frames) {
+    const Trajectory& trajectory = window_.trajectories()[frame.trajectory];
+    const std::vector<model::Sample> samples = samplesOf(trajectory, frame.step, options_, weights);
+    batch.insert(batch.end(), samples.begin(), samples.end());
+  }
+  return batch;
+}
+
 /// @return the loss before the step.
-double Trainer::trainStep(const std::vector<model::Sample>& batch, std::uint64_t dropout_seed) {
+double Trainer::trainStep(const std::vector<model::Sample>& batch, double learning_rate, std::uint64_t dropout_seed) {
   if (options_.batch_renorm_start > 0 && adam_.stepCount() >= options_.batch_renorm_start) {
     learner_->setNormalisation(nn::Normalisation::kRunning);
   }
   const double loss = learner_->lossAndGradients(batch, dropout_seed);
-  adam_.step(learner_->parameters().values(), learner_->parameters().gradients(), learningRate());
+  adam_.step(learner_->parameters().values(), learner_->parameters().gradients(), learning_rate);
   learner_->parametersChanged();
   if (ema_) updateAverage();
   return loss;
@@ -171,7 +200,8 @@ void Trainer::restore(const nn::WeightsFile& file, const std::string& source, co
   trajectories_seen_ = counters[0];
   new_trajectories_ = static_cast<int>(counters[1]);
   rounds_ = counters[2];
-  window_ = restoreWindow(file, source, options_.window, replay);
+  const std::size_t max_trajectories = options_.window == 0 ? trajectories_seen_ : options_.window;
+  restoreWindow(file, source, max_trajectories, replay, window_);
 }
 
 void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& source) {

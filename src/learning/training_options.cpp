@@ -1,5 +1,9 @@
 #include "early_fusion/learning/training_options.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/sim/task.h"
@@ -14,16 +18,32 @@ void addRounds(TrainingOptions& options, core::OptionSet& set) {
       "max_instances", options.max_instances, 0, sim::kMaxInstances, "",
       "each training episode draws its number of objects from the task's number to this one; held-out episodes have "
       "the task's number; 0: as the task");
+  set.include(options.pairs.options());
   set.add("trajectories_per_round", options.trajectories_per_round, 1, 100000, "trajectories",
           "new trajectories before the policy is trained on the window");
-  set.add("window", options.window, 1, 100000, "trajectories",
-          "the number of most recent trajectories that a round trains on");
+  set.add("window", options.window, 0, 100000, "trajectories",
+          "the number of most recent trajectories that a round trains on; 0: all so far");
+  set.add("window_memory", options.window_memory, 0, 1000000, "MB",
+          "memory for the window's frames; frames that do not fit are drawn again whenever they are trained on");
   set.add("epochs", options.epochs, 0.01, 100, "passes",
           "passes over the window in a round; a fraction takes a random part of it");
   set.add("batch_size", options.batch_size, 1, 1024, "frames",
           "frames in a training step, each with its labelled requests");
+  set.add("restart_policy", options.restart_policy,
+          "train a freshly initialised policy in each round, with the whole learning-rate schedule");
+}
+
+void addDriving(TrainingOptions& options, core::OptionSet& set) {
   set.addChoice("exploration", options.exploration, model::actionChoiceNames(),
                 "how rollouts choose actions from the probabilities");
+  set.add("expert_share", options.expert_share, 0, 1, "",
+          "share of the rollouts that the training expert drives instead of the policy, at the start of the session");
+  set.add("final_expert_share", options.final_expert_share, 0, 1, "",
+          "share that the training expert drives at the end, reached linearly");
+  set.add("expert_share_trajectories", options.expert_share_trajectories, 0, 100000000, "trajectories",
+          "trajectories until final_expert_share is reached; 0: the session");
+  set.addChoice("expert_share_per", options.expert_share_per, driveUnitNames(),
+                "whether the expert's share is drawn for each step or for each trajectory");
 }
 
 void addLabelling(TrainingOptions& options, core::OptionSet& set) {
@@ -63,9 +83,15 @@ void addOptimizer(TrainingOptions& options, core::OptionSet& set) {
 core::OptionSet TrainingOptions::options() {
   core::OptionSet set("training");
   addRounds(*this, set);
+  addDriving(*this, set);
   addLabelling(*this, set);
   addOptimizer(*this, set);
   return set;
+}
+
+double TrainingOptions::learningRateAt(double done) const {
+  const double cosine = 0.5 * (1 + std::cos(M_PI * std::min(1.0, done)));
+  return final_learning_rate + (learning_rate - final_learning_rate) * cosine;
 }
 
 }  // namespace early_fusion::learning

@@ -77,6 +77,13 @@ ClassWeights classWeights(const std::deque<Trajectory>& window, const TrainingOp
   return weights;
 }
 
+void dropUntrainedRequests(Trajectory& trajectory, const TrainingOptions& options) {
+  for (TrajectoryStep& step : trajectory.steps) {
+    step.labelled_requests.resize(trainedRequests(step, options));
+    step.labelled_requests.shrink_to_fit();
+  }
+}
+
 bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options) {
   return !options.skip_repeats || !step.repeats ||
          !expert::contains(step.labelled_requests.front().label.optimal, step.action);

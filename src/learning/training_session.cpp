@@ -8,15 +8,24 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/learning/frame_drawer.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/vision_trunk.h"
 
 namespace early_fusion::learning {
 
 namespace {
 
 constexpr char kCheckpoint[] = "checkpoint.safetensors";
+constexpr char kCurveFile[] = "curve.csv";
+constexpr char kScores[] = "scores.csv";
+constexpr char kOptionsFile[] = "options.yaml";
+constexpr char kWeights[] = "weights.safetensors";
+constexpr char kResult[] = "result.json";
+constexpr std::array kFiles = {kCheckpoint, kCurveFile, kScores, kOptionsFile, kWeights, kResult};
 // Keys of a checkpoint's metadata.
 constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
 constexpr char kTask[] = "session.task";        // sim::Task as YAML
@@ -29,6 +38,8 @@ std::string learningOptions(SessionOptions options) {
   options.output.clear();
   options.resume = false;
   options.evaluation_episodes = SessionOptions().evaluation_episodes;
+  options.training.window_memory = TrainingOptions().window_memory;
+  options.score_every = SessionOptions().score_every;
   return options.options().toYaml();
 }
 
@@ -55,12 +66,16 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
   all.insert(now.begin(), now.end());
   const auto value = [](const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
-    return found == settings.end() ? "(absent)" : "'" + found->second + "'";
+    return found == settings.end() ? "(absent)" : "'" + core::excerpt(found->second) + "'";
   };
   for (const auto& [name, unused] : all) {
     if (value(before, name) == value(now, name)) continue;
-    throw core::Error(source + ": the session was started with " + name + " = " + value(before, name) + ", not " +
-                      value(now, name) + "; resume it with the same settings, or choose another output folder");
+    const std::string advice =
+        name == "precision" ? "; set precision to " + value(before, name) +
+                                  " to go on in that arithmetic on this processor, or choose another output folder"
+                            : "; resume it with the same settings, or choose another output folder";
+    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) +
+                      ", not " + value(now, name) + advice);
   }
 }
 
@@ -72,22 +87,45 @@ double parseSeconds(const std::string& text, const std::string& source) {
   return seconds;
 }
 
+/// The task of the training episodes. @throws Error if the options do not fit the task.
+sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
+  return sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
+                        sim::withUpTo(options.max_instances, std::move(task)));
+}
+
 }  // namespace
+
+void checkSession(const SessionOptions& options, const world::World& world) {
+  if (options.seed == kHeldOutSeed) {
+    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
+                      " is the seed of the held-out episodes; choose another");
+  }
+  if (options.policy.image_size != world.options.image_size) {
+    throw core::Error("image_size: the policy's is " + std::to_string(options.policy.image_size) +
+                      " px and the world's is " + std::to_string(world.options.image_size) +
+                      " px; set both to the same value");
+  }
+  if (options.score_every > 0 && options.evaluation_episodes == 0) {
+    throw core::Error("score_every: a score needs episodes, but evaluation_episodes is 0; set both or neither");
+  }
+  if (!options.from.empty() && options.training.restart_policy) {
+    throw core::Error("from: a policy that restarts in each round (restart_policy) forgets it; set only one of them");
+  }
+  trainingTaskOf(options.training, sim::loadTask(options.task));
+}
 
 TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
-  if (options_.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
-  if (options_.policy.image_size != world_->options.image_size) {
-    throw core::Error("image_size: the policy's is " + std::to_string(options_.policy.image_size) +
-                      " px and the world's is " + std::to_string(world_->options.image_size) +
-                      " px; set both to the same value");
-  }
+  checkSession(options_, *world_);
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
-  trainer_ = std::make_unique<Trainer>(options_.policy, options_.training, world_->objects.vocabulary(), options_.seed);
+  options_.policy.precision = model::resolvedPrecision(options_.policy.precision);
+  lock_ = std::make_unique<core::FolderLock>(options_.output);
+  for (const char* name : kFiles) core::removeTemporaryFiles(path(name));
+  const auto drawer = std::make_shared<FrameDrawer>(world_);
+  trainer_ = std::make_unique<Trainer>(
+      options_.policy, options_.training, world_->objects.vocabulary(), options_.seed,
+      [drawer](const std::vector<FrameOfTrajectory>& frames) { return drawer->draw(frames); });
   std::error_code ignored;  // the first write reports it
   const bool there = std::filesystem::exists(path(kCheckpoint), ignored);
   if (there && !options_.resume) {
@@ -96,25 +134,40 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   if (there) {
     resume();
   } else {
-    core::writeFileAtomically(path("options.yaml"), options_.options().toYaml());
+    if (!options_.from.empty()) {
+      trainer_->warmStart(*model::loadPolicy(nn::WeightsFile::read(options_.from), options_.from), options_.from);
+    }
+    core::writeFileAtomically(path(kOptionsFile), options_.options().toYaml());
   }
 }
+
+sim::Task TrainingSession::trainingTask() const { return trainingTaskOf(options_.training, task_); }
 
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
   const nn::WeightsFile file = nn::WeightsFile::read(source);
+  if (!file.has_digest) {
+    throw core::Error(source +
+                      ": has no digest, so damage could not be seen; it is damaged, or an earlier version wrote it; "
+                      "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
+  }
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }
-  trainer_->restore(file, source, [this](const std::vector<EpisodeActions>& episodes) { return replay(episodes); });
+  trainer_->restore(file, source, [this](const auto& episodes, const auto& finished) { replay(episodes, finished); });
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
   trajectories_before_ = trainer_->trajectoriesSeen();
   curve_ = LearningCurve::parse(file.meta(kCurve, source), source);
+  if (std::filesystem::exists(path(kScores))) {
+    scores_ = ScoreCurve::parse(core::readFile(path(kScores)), path(kScores));
+    scores_.cutAfter(trajectories_before_);
+  }
   started_ = std::chrono::steady_clock::now();
   resumed_ = true;
 }
 
-std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions>& episodes) const {
+void TrainingSession::replay(const std::vector<EpisodeActions>& episodes,
+                             const std::function<void(Trajectory)>& finished) const {
   std::vector<std::uint64_t> numbers;
   for (const EpisodeActions& episode : episodes) {
     numbers.push_back(episode.episode);
@@ -122,17 +175,22 @@ std::vector<Trajectory> TrainingSession::replay(const std::vector<EpisodeActions
     throw core::Error(path(kCheckpoint) + ": has trajectories of " + std::to_string(episode.actions.size()) +
                       " steps, not " + std::to_string(task_.steps) + " as the task; the file is damaged");
   }
-  std::vector<Trajectory> trajectories;
   const std::unique_ptr<Agent> agent = makeReplayAgent(episodes);
-  trainingRunner().run(numbers, *agent, true,
-                       [&](Trajectory trajectory) { trajectories.push_back(std::move(trajectory)); });
-  return trajectories;
+  trainingRunner().run(numbers, *agent, true, finished);
+}
+
+std::unique_ptr<Agent> TrainingSession::rolloutAgent() {
+  const model::ActionChoice exploration = model::actionChoiceFromName(options_.training.exploration);
+  std::unique_ptr<Agent> policy = makePolicyAgent(trainer_->policy(), exploration, options_.seed);
+  if (expertDrive().share == 0) return policy;
+  return makeSharedAgent(std::move(policy), trainingExpert(), expertDrive(), options_.seed);
 }
 
 /// Writes the checkpoint last: if the process dies before that, the round is trained again and writes all files again.
 void TrainingSession::save() const {
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(path("curve.csv"), curve_.toCsv());
+  core::writeFileAtomically(path(kCurveFile), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
   for (const auto& [key, yaml] : settings(options_, task_, world_->options)) file.metadata[key] = yaml;
   file.metadata[kElapsed] = std::to_string(elapsedSec());
@@ -147,17 +205,37 @@ RoundStatistics TrainingSession::trainRound(const std::function<void(double)>& p
   return round;
 }
 
+bool TrainingSession::scoreDue() const {
+  if (options_.score_every == 0) return false;
+  const auto every = static_cast<std::uint64_t>(options_.score_every);
+  const std::uint64_t scored = scores_.points().empty() ? 0 : scores_.points().back().trajectories;
+  return trainer_->trajectoriesSeen() / every > scored / every;
+}
+
+void TrainingSession::addScore(const Evaluation& evaluation) {
+  const double trained_sec = curve_.points().empty() ? 0 : curve_.points().back().elapsed_sec;
+  started_ += std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(elapsedSec() - trained_sec));
+  scores_.add(trainer_->trajectoriesSeen(), trained_sec / 60, evaluation);
+  core::writeFileAtomically(path(kScores), scores_.toCsv());
+}
+
 std::string TrainingSession::weightsId() const {
   return task_.name + "-seed" + std::to_string(options_.seed) + "-" + std::to_string(trainer_->trajectoriesSeen());
 }
 
 nn::WeightsFile TrainingSession::weights() const {
-  return model::savePolicy(trainer_->policy(), {{"id", weightsId()},
-                                                {"task", task_.name},
-                                                {"preset", options_.preset},
-                                                {"seed", std::to_string(options_.seed)},
-                                                {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
-                                                {"options", learningOptions(options_)}});
+  std::vector<std::pair<std::string, std::string>> metadata = {
+      {"id", weightsId()},
+      {"task", task_.name},
+      {"preset", options_.preset},
+      {"seed", std::to_string(options_.seed)},
+      {"trajectories", std::to_string(trainer_->trajectoriesSeen())},
+      {"options", learningOptions(options_)}};
+  sim::PairSplit pairs = options_.training.pairs;
+  const core::OptionSet set = pairs.options();
+  for (const core::Option& option : set.options()) metadata.emplace_back(option.name, option.get());
+  return model::savePolicy(trainer_->policy(), metadata);
 }
 
 double TrainingSession::elapsedSec() const {
@@ -185,46 +263,38 @@ Progress TrainingSession::progress() const {
   return progress;
 }
 
+std::uint64_t TrainingSession::trajectoriesSaved() const {
+  return curve_.points().empty() ? 0 : curve_.points().back().round.trajectories;
+}
+
 std::string TrainingSession::path(const std::string& name) const {
   return (std::filesystem::path(options_.output) / name).string();
 }
 
-std::string TrainingSession::weightsPath() const { return path("weights.safetensors"); }
-std::string TrainingSession::resultPath() const { return path("result.json"); }
+std::string TrainingSession::weightsPath() const { return path(kWeights); }
+std::string TrainingSession::resultPath() const { return path(kResult); }
 
 void TrainingSession::finish(const Evaluation& evaluation) {
+  if (!evaluation.outcomes.empty()) addScore(evaluation);
   auto result = nlohmann::ordered_json::parse(evaluation.toJson());
   result["policy"] = weightsPath();
   result["weights_id"] = weightsId();
   result["training"] = {{"trajectories", trainer_->trajectoriesSeen()},
                         {"elapsed_sec", elapsedSec()},
                         {"options", options_.options().toYaml()}};
+  lock_->check();
   weights().write(weightsPath());
-  core::writeFileAtomically(resultPath(), result.dump(2) + "\n");
+  core::writeFileAtomically(resultPath(), result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-Evaluation runSession(TrainingSession& session, const std::function<void(const Progress&)>& report) {
-  Trainer& trainer = session.trainer();
-  RolloutRunner runner = session.trainingRunner();
-  const model::ActionChoice exploration = model::actionChoiceFromName(trainer.options().exploration);
-  while (!trainer.finished()) {
-    const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), exploration, session.options().seed);
-    runner.run(trainer.trajectoriesSeen(), trainer.missingInRound(), *agent, true,
-               [&](Trajectory trajectory) { trainer.add(std::move(trajectory)); });
-    session.trainRound();
-    report(session.progress());
+sim::PairSplit heldOutPairsOf(const nn::WeightsFile& weights, const std::string& source) {
+  sim::PairSplit pairs;
+  core::OptionSet set = pairs.options();
+  for (const core::Option& option : set.options()) {
+    const auto found = weights.metadata.find(option.name);
+    if (found != weights.metadata.end()) set.set(option.name, found->second, source + ": metadata");
   }
-  RolloutRunner held_out(session.world(), session.task(), kHeldOutSeed);
-  const std::unique_ptr<Agent> agent = makePolicyAgent(trainer.policy(), model::ActionChoice::kArgmax, kHeldOutSeed);
-  const Evaluation evaluation =
-      evaluate(held_out, *agent, session.options().evaluation_episodes, session.weightsPath(), [&](int done) {
-        Progress progress = session.progress();
-        progress.stage = "evaluation";
-        progress.evaluated = done;
-        report(progress);
-      });
-  session.finish(evaluation);
-  return evaluation;
+  return pairs;
 }
 
 }  // namespace early_fusion::learning

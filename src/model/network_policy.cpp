@@ -2,6 +2,8 @@
 
 #include <omp.h>
 
+#include <algorithm>
+
 namespace early_fusion::model {
 
 NetworkPolicy::NetworkPolicy(const PolicyOptions& options, const core::Vocabulary& vocabulary, std::uint64_t seed,
@@ -55,14 +57,9 @@ void NetworkPolicy::predictFeatures(const Observation& observation) {
   predictFeatures(0, observation, VisionTrunk::kAllThreads, thread_features_.data());
 }
 
-void NetworkPolicy::predict(const std::vector<Observation>& observations, Probabilities& probabilities) {
+template <class Use>
+void NetworkPolicy::forEachFeatures(const std::vector<Observation>& observations, const Use& use) {
   const int rows = static_cast<int>(observations.size());
-  probabilities.resize(rows, core::kActionCount);
-  if (rows == 1) {
-    predictFeatures(observations[0]);
-    head_.predict(thread_features_.data(), probabilities.data());
-    return;
-  }
   reservePrediction(rows);
   for (int i = 0; i < rows; ++i) countItems(observations[i], i, vocabulary_.size(), predict_counts_.row(i).data());
   refreshInference();
@@ -71,14 +68,31 @@ void NetworkPolicy::predict(const std::vector<Observation>& observations, Probab
     const int thread = omp_get_thread_num();
     float* features = thread_features_.row(thread).data();
     predictFeatures(i, observations[i], thread, features);
-    head_.predict(features, probabilities.row(i).data());
+    use(i, features);
   }
+}
+
+void NetworkPolicy::predictFeatures(const std::vector<Observation>& observations, nn::Matrix& features) {
+  reserveRows(features, static_cast<int>(observations.size()), featureCount());
+  forEachFeatures(observations,
+                  [&](int row, const float* own) { std::copy(own, own + featureCount(), features.row(row).data()); });
+}
+
+void NetworkPolicy::predict(const std::vector<Observation>& observations, Probabilities& probabilities) {
+  const int rows = static_cast<int>(observations.size());
+  probabilities.resize(rows, core::kActionCount);
+  if (rows == 1) {
+    predictFeatures(observations[0]);
+    head_.predict(thread_features_.data(), probabilities.data());
+    return;
+  }
+  forEachFeatures(observations,
+                  [&](int row, const float* features) { head_.predict(features, probabilities.row(row).data()); });
 }
 
 void NetworkPolicy::reserve(int rows) {
   for (nn::Matrix* matrix : {&goals_, &dgoals_}) reserveRows(*matrix, rows, options_.channels);
-  for (nn::Matrix* matrix : {&features_, &dfeatures_})
-    reserveRows(*matrix, rows, static_cast<int>(thread_features_.cols()));
+  for (nn::Matrix* matrix : {&features_, &dfeatures_}) reserveRows(*matrix, rows, featureCount());
 }
 
 double NetworkPolicy::lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/model/policy_kinds.h"
 
 namespace early_fusion::model {
@@ -26,7 +27,7 @@ core::Vocabulary vocabularyFromText(const std::string& text, const std::string& 
   try {
     names = nlohmann::json::parse(text).get<std::vector<std::string>>();
   } catch (const nlohmann::json::exception&) {
-    throw core::Error(source + ": metadata 'vocabulary' is not a JSON list of item names: " + text);
+    throw core::Error(source + ": metadata 'vocabulary' is not a JSON list of item names: " + core::excerpt(text));
   }
   try {
     return core::Vocabulary(names);
@@ -60,12 +61,12 @@ core::OptionSet fileOptions(PolicyOptions& options) {
 void checkMetadata(const nn::WeightsFile& file, const std::string& source) {
   const std::string& format = file.meta("format", source);
   if (format != kFormat) {
-    throw core::Error(source + ": metadata 'format' is '" + format + "'; this version reads '" + kFormat + "'");
+    throw core::Error(source + ": metadata 'format' is '" + core::excerpt(format) + "'; this version reads '" + kFormat + "'");
   }
   const std::string& actions = file.meta("actions", source);
   const bool same = nlohmann::json::parse(actions, nullptr, false) == nlohmann::json::parse(actionsText());
   if (!same) {  // nlohmann's != is false, too, for a text that is not JSON
-    throw core::Error(source + ": metadata 'actions' is " + actions + "; this version has " + actionsText() +
+    throw core::Error(source + ": metadata 'actions' is " + core::excerpt(actions) + "; this version has " + actionsText() +
                       ", in this order");
   }
   if (file.metadata.count(kFieldOfView) == 0) {
@@ -97,7 +98,7 @@ void loadTensors(const nn::WeightsFile& file, const std::string& source, const s
     const nn::StoredTensor& tensor = found->second;
     if (tensor.dtype != "F32") throw core::Error(where + " has type " + tensor.dtype + "; it must be F32");
     if (tensor.shape != slice.shape || tensor.bytes.size() != slice.size * sizeof(float)) {
-      throw core::Error(where + " has shape " + join(tensor.shape) + "; by the file's metadata it must be " +
+      throw core::Error(where + " has shape " + core::excerpt(join(tensor.shape)) + "; by the file's metadata it must be " +
                         join(slice.shape));
     }
     float* to = values.data() + slice.offset;

@@ -210,15 +210,16 @@ void BlockTrunk<T>::predict(int thread, const core::FrameStack& frames, const fl
   writeMap(in, map);
 }
 
-bool usesBfloat16(const std::string& precision) {
-  return precision == "bf16" || (precision == "auto" && nn::processorPrefersBfloat16());
-}
-
 }  // namespace
+
+std::string resolvedPrecision(const std::string& precision) {
+  if (precision != "auto") return precision;
+  return nn::processorPrefersBfloat16() ? "bf16" : "f32";
+}
 
 std::unique_ptr<VisionTrunk> makeVisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape,
                                              const std::string& precision, int threads) {
-  if (usesBfloat16(precision)) return std::make_unique<BlockTrunk<nn::bfloat16>>(parameters, shape, threads);
+  if (resolvedPrecision(precision) == "bf16") return std::make_unique<BlockTrunk<nn::bfloat16>>(parameters, shape, threads);
   return std::make_unique<BlockTrunk<float>>(parameters, shape, threads);
 }
 

@@ -22,21 +22,14 @@ void sumOverChannels(const float* map, const float* factors, int channels, int r
 
 void AttentionPooling::forward(const float* map, const float* query, float* weights, float* pooled) const {
   sumOverChannels(map, query, channels_, regions_, weights);
-  if (kind_ == AttentionWeights::kSoftmax) {
-    softmax(weights, regions_, weights);
-  } else {
-    for (int i = 0; i < regions_; ++i) weights[i] /= static_cast<float>(regions_);
-  }
+  if (kind_ == AttentionWeights::kSoftmax) softmax(weights, regions_, weights);
   for (int c = 0; c < channels_; ++c) pooled[c] = dot(weights, map + c * regions_, regions_);
 }
 
 void AttentionPooling::backwardWeights(const float* weights, float* gradients) const {
-  if (kind_ == AttentionWeights::kSoftmax) {
-    const float mean = dot(weights, gradients, regions_);
-    for (int i = 0; i < regions_; ++i) gradients[i] = weights[i] * (gradients[i] - mean);
-  } else {
-    for (int i = 0; i < regions_; ++i) gradients[i] /= static_cast<float>(regions_);
-  }
+  if (kind_ != AttentionWeights::kSoftmax) return;
+  const float mean = dot(weights, gradients, regions_);
+  for (int i = 0; i < regions_; ++i) gradients[i] = weights[i] * (gradients[i] - mean);
 }
 
 void AttentionPooling::backward(const float* map, const float* query, const float* weights, const float* dpooled,

@@ -60,13 +60,14 @@ IntLanes mipLevel(FloatLanes texels_per_pixel) {
 
 /// Bilinear samples of wrapping textures. Each lane has two channels with eight bits and eight bits of fraction.
 struct TwoColors {
-  IntLanes red_blue, green_alpha;
+  UnsignedLanes red_blue, green_alpha;
 };
 
 TwoColors sampleTextures(const std::uint32_t* texels, IntLanes first_texel, IntLanes size, FloatLanes u, FloatLanes v) {
   constexpr int kOne = 1 << kFractionBits;
-  const IntLanes x = floorToInt(u * toFloat(size * kOne)) - kOne / 2,
-                 y = floorToInt(v * toFloat(size * kOne)) - kOne / 2;
+  const IntLanes half_texel = allLanes(-kOne / 2);
+  const IntLanes x = wrappingSum(floorToInt(u * toFloat(size * kOne)), half_texel),
+                 y = wrappingSum(floorToInt(v * toFloat(size * kOne)), half_texel);
   const IntLanes x0 = x >> kFractionBits, y0 = y >> kFractionBits;
   const IntLanes right = x & (kOne - 1), down = y & (kOne - 1), mask = size - 1;
   // The smaller levels come before this one: 1 + 4 + 16 + ... texels.
@@ -82,8 +83,9 @@ TwoColors sampleTextures(const std::uint32_t* texels, IntLanes first_texel, IntL
       const IntLanes texel = gather<IntLanes>(texels, row[j] + column[i]);
       // The weights' sum is 256, so each half of a lane holds its channel's sum without overflow.
       const auto twice = reinterpret_cast<HalfLanes>(weight[j][i] | weight[j][i] << 16);
-      sum.red_blue += reinterpret_cast<IntLanes>(reinterpret_cast<HalfLanes>(texel & 0x00ff00ff) * twice);
-      sum.green_alpha += reinterpret_cast<IntLanes>(reinterpret_cast<HalfLanes>((texel >> 8) & 0x00ff00ff) * twice);
+      sum.red_blue += reinterpret_cast<UnsignedLanes>(reinterpret_cast<HalfLanes>(texel & 0x00ff00ff) * twice);
+      sum.green_alpha +=
+          reinterpret_cast<UnsignedLanes>(reinterpret_cast<HalfLanes>((texel >> 8) & 0x00ff00ff) * twice);
     }
   }
   return sum;
@@ -240,8 +242,8 @@ IntLanes FragmentShader::color(const Attributes& at) const {
   if (maskBits(specular > 0.f) != 0) {
     white += select(faces_light, highlight(normal, ray) * lit, FloatLanes{}) * specular * 255.f;
   }
-  const auto channel = [&](IntLanes value) {
-    return truncate(lowest(toFloat(value & 0xffff) * gain + white, allLanes(255.f)));
+  const auto channel = [&](UnsignedLanes value) {
+    return truncate(lowest(toFloat(toSigned(value & 0xffff)) * gain + white, allLanes(255.f)));
   };
   return channel(texture.red_blue) | channel(texture.green_alpha) << kSumBits |
          channel(texture.red_blue >> 16) << (2 * kSumBits);

@@ -24,15 +24,20 @@ inline constexpr int kLanes = 4;  // SSE, NEON
 
 using FloatLanes __attribute__((vector_size(4 * kLanes))) = float;
 using IntLanes __attribute__((vector_size(4 * kLanes))) = std::int32_t;  ///< also a mask: -1 for true, 0 for false
+using UnsignedLanes __attribute__((vector_size(4 * kLanes))) = std::uint32_t;  ///< for sums that may wrap
 
 inline FloatLanes allLanes(float value) { return value - FloatLanes{}; }
 inline IntLanes allLanes(std::int32_t value) { return value - IntLanes{}; }
 
 inline FloatLanes toFloat(IntLanes a) { return __builtin_convertvector(a, FloatLanes); }
 inline IntLanes truncate(FloatLanes a) { return __builtin_convertvector(a, IntLanes); }
+inline UnsignedLanes toUnsigned(IntLanes a) { return reinterpret_cast<UnsignedLanes>(a); }
+inline IntLanes toSigned(UnsignedLanes a) { return reinterpret_cast<IntLanes>(a); }
+/// Wraps around where the result does not fit.
+inline IntLanes wrappingSum(IntLanes a, IntLanes b) { return toSigned(toUnsigned(a) + toUnsigned(b)); }
 inline IntLanes floorToInt(FloatLanes a) {
   const IntLanes towards_zero = truncate(a);
-  return towards_zero + (toFloat(towards_zero) > a);
+  return wrappingSum(towards_zero, toFloat(towards_zero) > a);  // may be the lowest integer if `a` is out of range
 }
 inline IntLanes bitsOf(FloatLanes a) { return reinterpret_cast<IntLanes>(a); }
 

@@ -14,6 +14,7 @@ InstanceMask allOf(std::size_t count) { return count >= 32 ? ~InstanceMask{0} : 
 Episode::Episode(const world::World& world, const Task& task, EpisodeSetup setup)
     : setup_(std::move(setup)),
       cone_(std::make_shared<ConeTable>(world, setup_.instances)),
+      held_out_pairs_(world.objects.size(), task.pair_split),
       steps_(task.steps),
       outstanding_(setup_.request),
       requested_(static_cast<int>(setup_.request.size())) {

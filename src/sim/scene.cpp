@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kTriesPerInstance = 200;
 constexpr int kTriesPerScene = 50;
+constexpr int kTriesPerRequest = 200;
 
 /// The objects placed so far; tests whether one more fits.
 class CounterTop {
@@ -95,6 +96,20 @@ std::vector<Instance> sampleInstances(const world::World& world, const Task& tas
   throw core::Error(text.str());
 }
 
+/// Draws a random subset of the instances as the request. @return false if no allowed one was found.
+bool drawRequest(const Task& task, const HeldOutPairs& held_out, core::Random& random, EpisodeSetup& setup) {
+  std::vector<int> order(setup.instances.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = 0; i < kTriesPerRequest; ++i) {
+    random.shuffle(order);
+    setup.request.clear();
+    for (int k = 0; k < task.requested; ++k) setup.request.push_back(setup.instances[order[k]].item);
+    std::sort(setup.request.begin(), setup.request.end());
+    if (held_out.allow(task.pairs, setup.request)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& instance) {
@@ -113,13 +128,18 @@ std::vector<world::ObjectPose> presentObjects(const world::World& world, const s
 
 EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random) {
   task.validate("task '" + task.name + "'");
+  const HeldOutPairs held_out(world.objects.size(), task.pair_split);
   EpisodeSetup setup;
-  setup.instances = sampleInstances(world, task, random);
-  std::vector<int> order(setup.instances.size());
-  std::iota(order.begin(), order.end(), 0);
-  random.shuffle(order);
-  for (int i = 0; i < task.requested; ++i) setup.request.push_back(setup.instances[order[i]].item);
-  std::sort(setup.request.begin(), setup.request.end());
+  bool found = false;
+  for (int i = 0; i < kTriesPerScene && !found; ++i) {
+    setup.instances = sampleInstances(world, task, random);
+    found = drawRequest(task, held_out, random, setup);
+  }
+  if (!found) {
+    throw core::Error("task '" + task.name + "': no request of " + std::to_string(task.requested) +
+                      " instances is one of the '" + pairChoiceName(task.pairs) + "' pairs in " +
+                      std::to_string(kTriesPerScene) + " scenes; change held_out_pairs or request fewer instances");
+  }
   const world::OrientationLattice& lattice = world.rig.lattice();
   setup.orientation = lattice.at(random.below(lattice.size()));
   return setup;

@@ -41,4 +41,20 @@ Task withUpTo(std::int64_t most, Task task) {
   return task;
 }
 
+Task withPairs(const std::string& choice, PairSplit split, Task task) {
+  split.options().validate("task '" + task.name + "'");
+  task.pairs = pairChoiceFromName(choice);
+  task.pair_split = split;
+  if (task.pairs == PairChoice::kAll) return task;
+  if (split.held_out_pairs == 0) {
+    throw core::Error("pairs: '" + choice +
+                      "' needs held-out pairs, but held_out_pairs is 0; set it above 0, or choose all");
+  }
+  if (task.requested < 2) {
+    throw core::Error("held_out_pairs: task '" + task.name +
+                      "' requests one instance, so it has no pairs; choose a task that requests more");
+  }
+  return task;
+}
+
 }  // namespace early_fusion::sim

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 
 namespace early_fusion::world {
@@ -53,10 +54,50 @@ Texture squareTexture(const cv::Mat& bgr) {
   return texture;
 }
 
-cv::Mat decodeEmbedded(const aiTexture& embedded) {
+constexpr std::size_t kMaxTextureBytes = std::size_t{256} << 20;
+constexpr std::int64_t kMaxPixels = 64'000'000;  // of a texture: one of 8000 x 8000 fits
+
+std::uint32_t bigEndian(const std::string& bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+/// The number of pixels that a PNG or JPEG file claims to have; 0 if it cannot be found.
+std::int64_t claimedPixels(const std::string& bytes) {
+  if (bytes.compare(1, 3, "PNG") == 0 && bytes.size() >= 24) {
+    return static_cast<std::int64_t>(bigEndian(bytes, 16, 4)) * bigEndian(bytes, 20, 4);
+  }
+  if (bytes.compare(0, 2, "\xff\xd8") != 0) return 0;
+  for (std::size_t at = 2; at + 9 <= bytes.size() && bytes[at] == '\xff'; at += 2 + bigEndian(bytes, at + 2, 2)) {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (is_frame) return static_cast<std::int64_t>(bigEndian(bytes, at + 5, 2)) * bigEndian(bytes, at + 7, 2);
+  }
+  return 0;
+}
+
+/// @return an empty image if the bytes are none. @throws Error if the image is too large.
+cv::Mat decode(const std::string& bytes, const std::string& where) {
+  const std::int64_t pixels = bytes.size() < 4 ? 0 : claimedPixels(bytes);
+  if (pixels > kMaxPixels) {
+    throw core::Error(where + " claims to have " + std::to_string(pixels) + " pixels; the maximum is " +
+                      std::to_string(kMaxPixels));
+  }
+  if (bytes.empty()) return cv::Mat();
+  try {
+    return cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    return cv::Mat();
+  }
+}
+
+cv::Mat decodeEmbedded(const aiTexture& embedded, const std::string& where) {
   if (embedded.mHeight == 0) {  // a PNG or JPEG file of mWidth bytes
-    const auto* bytes = reinterpret_cast<const unsigned char*>(embedded.pcData);
-    return cv::imdecode(std::vector<unsigned char>(bytes, bytes + embedded.mWidth), cv::IMREAD_COLOR);
+    return decode(std::string(reinterpret_cast<const char*>(embedded.pcData), embedded.mWidth), where);
+  }
+  if (static_cast<std::uint64_t>(embedded.mWidth) * embedded.mHeight > static_cast<std::uint64_t>(kMaxPixels)) {
+    throw core::Error(where + " is larger than " + std::to_string(kMaxPixels) + " pixels");
   }
   cv::Mat bgr(embedded.mHeight, embedded.mWidth, CV_8UC3);
   for (int y = 0; y < bgr.rows; ++y) {
@@ -70,8 +111,9 @@ cv::Mat decodeEmbedded(const aiTexture& embedded) {
 
 cv::Mat readImage(const aiScene& scene, const std::string& name, const std::string& mesh_path) {
   if (const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str())) {
-    const cv::Mat image = decodeEmbedded(*embedded);
-    if (image.empty()) throw core::Error(mesh_path + ": the embedded texture '" + name + "' cannot be decoded");
+    const std::string where = mesh_path + ": the embedded texture '" + core::excerpt(name) + "'";
+    const cv::Mat image = decodeEmbedded(*embedded, where);
+    if (image.empty()) throw core::Error(where + " cannot be decoded");
     return image;
   }
   std::string file = name;
@@ -81,14 +123,12 @@ cv::Mat readImage(const aiScene& scene, const std::string& name, const std::stri
   file = core::resolvePath(mesh_path, file);
   const std::string bytes = [&] {
     try {
-      return core::readFile(file);
+      return core::readFile(file, kMaxTextureBytes);
     } catch (const core::Error& error) {
       throw core::Error(mesh_path + ": its texture cannot be read: " + error.what());
     }
   }();
-  const cv::Mat image = bytes.empty()
-                            ? cv::Mat()
-                            : cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+  const cv::Mat image = decode(bytes, mesh_path + ": its texture " + file);
   if (image.empty()) {
     throw core::Error(mesh_path + ": its texture " + file + " is not an image that can be decoded; use PNG or JPEG");
   }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/options.h"
@@ -30,7 +31,7 @@ void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, con
   for (const auto& entry : map) {
     const std::string key = entry.first.as<std::string>("");
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw core::Error(place(file, entry.first) + "unknown key '" + key + "'; known are " + core::joined(known));
+      throw core::Error(place(file, entry.first) + "unknown key '" + core::excerpt(key) + "'; known are " + core::joined(known));
     }
     if (!seen.insert(key).second) throw core::Error(place(file, entry.first) + key + " is given twice");
   }
@@ -59,7 +60,7 @@ Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
   if (scale.minCoeff() > 0 && scale.allFinite()) return scale;
   std::ostringstream text;
   text << value;
-  throw core::Error(place(file, value) + "scale is '" + text.str() + "'; it must be a positive number or [x, y, z]");
+  throw core::Error(place(file, value) + "scale is '" + core::excerpt(text.str()) + "'; it must be a positive number or [x, y, z]");
 }
 
 /// Moves the mesh upright onto z = 0, centred above the origin. @return the point that became the origin.
@@ -88,7 +89,7 @@ Object readObject(const YAML::Node& entry, const std::string& file, int max_tria
   object.name = readText(entry, "name", file);
   object.mesh_file = core::resolvePath(file, readText(entry, "mesh", file));
   object.mesh_scale = readScale(entry["scale"], file);
-  const std::string where = place(file, entry) + "object '" + object.name + "': ";
+  const std::string where = place(file, entry) + "object '" + core::excerpt(object.name) + "': ";
   try {
     object.mesh = loadTexturedMesh(object.mesh_file, object.mesh_scale, max_triangles);
   } catch (const core::Error& error) {

@@ -1,7 +1,5 @@
 #include "early_fusion/world/textured_mesh.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
@@ -9,6 +7,9 @@
 #include <iostream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
+#include "early_fusion/core/file.h"
+#include "mesh_import.h"
 #include "mesh_simplification.h"
 #include "mesh_texture.h"
 
@@ -16,7 +17,6 @@ namespace early_fusion::world {
 
 namespace {
 
-constexpr float kCreaseAngleDeg = 50.f;
 constexpr int kMaxNodeDepth = 256;
 
 /// The state of a conversion from assimp's scene to parts, one part for each material.
@@ -55,7 +55,8 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
   const Eigen::Affine3d transform = Eigen::Scaling(conversion.scale) * node_transform;
   const double determinant = transform.linear().determinant();
   if (!std::isfinite(determinant) || determinant == 0) {
-    throw core::Error(conversion.path + ": mesh '" + mesh.mName.C_Str() + "' is scaled to nothing or not finite");
+    throw core::Error(conversion.path + ": mesh '" + core::excerpt(mesh.mName.C_Str()) +
+                      "' is scaled to nothing or not finite");
   }
   // The inverse transpose keeps normals perpendicular under any scale, and pointing outwards under a reflection.
   const Eigen::Matrix3d normal_transform = transform.linear().inverse().transpose();
@@ -64,8 +65,8 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     part.vertices.push_back(convertVertex(mesh, i, transform, normal_transform));
     if (!part.vertices.back().position.allFinite() || !part.vertices.back().uv.allFinite()) {
-      throw core::Error(conversion.path + ": vertex " + std::to_string(i) + " of mesh '" + mesh.mName.C_Str() +
-                        "' is not finite");
+      throw core::Error(conversion.path + ": vertex " + std::to_string(i) + " of mesh '" +
+                        core::excerpt(mesh.mName.C_Str()) + "' is not finite");
     }
   }
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
@@ -84,6 +85,18 @@ void appendNode(Conversion& conversion, const aiNode& node, const Eigen::Affine3
     appendMesh(conversion, *conversion.scene.mMeshes[node.mMeshes[i]], transform);
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i) appendNode(conversion, *node.mChildren[i], transform, depth + 1);
+}
+
+bool hasArea(const TexturedMesh& mesh) {
+  for (const MeshPart& part : mesh.parts) {
+    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+      const auto corner = [&](std::size_t k) {
+        return part.vertices[part.indices[i + k]].position.cast<double>().eval();
+      };
+      if ((corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 0) return true;
+    }
+  }
+  return false;
 }
 
 TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen::Vector3d& scale) {
@@ -118,19 +131,10 @@ Eigen::AlignedBox3f TexturedMesh::bounds() const {
 
 TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles) {
   Assimp::Importer importer;
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngleDeg);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // A Collada file's coordinates are used unchanged, as in other ROS programs: z is up in the world.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
-                                  aiProcess_SortByPType | aiProcess_FlipUVs | aiProcess_TransformUVCoords);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw core::Error(path + ": cannot be read as a mesh: " + importer.GetErrorString());
-  }
-  TexturedMesh mesh = convert(path, *scene, scale);
+  TexturedMesh mesh = core::namingOutOfMemory(path, [&] { return convert(path, importMesh(importer, path), scale); });
   const std::size_t triangles = mesh.triangleCount();
   if (triangles == 0) throw core::Error(path + ": has no triangles; export a surface mesh");
+  if (!hasArea(mesh)) throw core::Error(path + ": all its triangles have no area; export a surface mesh");
   simplify(mesh, max_triangles);
   if (mesh.triangleCount() < triangles) {
     std::cerr << "early_fusion: " << path << ": " << triangles << " triangles simplified to " << mesh.triangleCount()

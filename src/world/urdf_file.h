@@ -8,6 +8,9 @@
 
 namespace early_fusion::world {
 
+/// @param source names the text in errors. @throws Error naming `source` and the parser's reason.
+urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::string& source);
+
 /// @throws Error naming `path` and the parser's reason.
 urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path);
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -54,13 +55,17 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
   const std::pair<std::string, std::vector<std::string>> commands[] = {
-      {"evaluate", {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--world"}},
+      {"evaluate",
+       {"--policy", "--task", "--episodes", "--seed", "--json", "--trace", "--mode", "--pairs", "--held-out-pairs",
+        "--held-out-pairs-seed", "--world"}},
       {"difficulty", {"--task", "--episodes", "--seed", "--world"}},
       {"render",
        {"--image", "--task", "--seed", "--episode", "--step", "--policy", "--size", "--scale", "--annotate", "--world",
         "--out"}},
-      {"inspect", {"weights", "--task", "--world"}},
+      {"retention", {"--run", "--out", "--trajectories", "--evaluate-every", "--evaluation-episodes", "--seed"}},
+      {"inspect", {"weights", "--task", "--world", "--rewrite"}},
       {"urdf", {"part", "--world"}},
+      {"experiment", {"file", "--output", "--jobs", "--list", "--collect"}},
       {"train", {"--task"}}};
   for (const auto& [command, arguments] : commands) {
     EXPECT_EQ(run("--help"), 0);
@@ -179,6 +184,102 @@ TEST_F(CommandLine, TrainsResumesInspectsAndEvaluatesWhatItTrained) {
       << errors_;
 }
 
+TEST_F(CommandLine, EvaluatesOnThePairsThatTheWeightsHeldOut) {
+  core::writeFileAtomically(path("two.yaml"), "{instances: 5, requested: 2, steps: 3}");
+  const std::string task = " --task " + path("two.yaml");
+  ASSERT_EQ(
+      run("train" + task + " --output " + path("run") +
+          " --trajectories 2 --evaluation-episodes 1 --precision f32 --held-out-pairs 0.5 --held-out-pairs-seed 7"),
+      0)
+      << errors_;
+  const sim::HeldOutPairs held_out(16, {0.5, 7});
+  const core::Vocabulary vocabulary = world::loadWorld("")->objects.vocabulary();
+  const auto requestsWithOne = [&](const std::string& arguments) {
+    EXPECT_EQ(run("evaluate --episodes 12 --trace -" + task + arguments), 0) << errors_;
+    std::istringstream lines(output_);
+    int with_one = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const auto step = nlohmann::json::parse(line);
+      if (step["step"] != 0) continue;
+      with_one += held_out.areIn(vocabulary.request(step["request"].get<std::vector<std::string>>()));
+    }
+    return with_one;
+  };
+  const std::string policy = " --policy " + path("run/weights.safetensors");
+  EXPECT_EQ(requestsWithOne(policy + " --pairs held_out"), 12);
+  EXPECT_EQ(requestsWithOne(policy + " --pairs trained"), 0);
+  EXPECT_EQ(requestsWithOne(" --policy expert --pairs held_out --held-out-pairs 0.5 --held-out-pairs-seed 7"), 12);
+  const int of_all = requestsWithOne(policy);
+  EXPECT_GT(of_all, 0);
+  EXPECT_LT(of_all, 12);
+}
+
+TEST_F(CommandLine, MeasuresRetentionAndWritesATable) {
+  core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
+  ASSERT_EQ(run("train --task " + path("tiny.yaml") + " --output " + path("run") +
+                " --trajectories 2 --evaluation-episodes 1 --precision f32"),
+            0)
+      << errors_;
+  const std::string small = " --trajectories 4 --evaluate-every 2 --evaluation-episodes 2";
+  ASSERT_EQ(run("retention --run " + path("run") + small), 0) << errors_;
+  const std::string table = core::readFile(path("run/retention.csv"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5) << table;
+  EXPECT_NE(table.find("early_fusion,same,2,"), std::string::npos) << table;
+  EXPECT_NE(table.find("early_fusion,other,4,"), std::string::npos) << table;
+  ASSERT_EQ(run("retention --run " + path("run") + small + " --out -"), 0) << errors_;
+  EXPECT_EQ(output_.substr(output_.size() - table.size()), table);
+  EXPECT_NE(run("retention --run " + path("nowhere")), 0);
+  EXPECT_NE(errors_.find(path("nowhere/options.yaml")), std::string::npos) << errors_;
+}
+
+TEST_F(CommandLine, InspectRefusesADamagedFileAndAddsADigestToAForeignOne) {
+  const std::string shipped = core::shareFolder() + "/models/simple.safetensors";
+  ASSERT_EQ(run("inspect " + shipped), 0) << errors_;
+  EXPECT_EQ(output_.rfind("digest: right\n", 0), 0u) << output_;
+  std::string bytes = core::readFile(shipped);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+  core::writeFileAtomically(path("damaged.safetensors"), bytes);
+  EXPECT_EQ(run("inspect " + path("damaged.safetensors")), 1);
+  EXPECT_NE(errors_.find("damaged.safetensors: the file is damaged"), std::string::npos) << errors_;
+  EXPECT_EQ(output_, "");
+  core::writeFileAtomically(path("foreign.safetensors"), std::string("\2\0\0\0\0\0\0\0{}", 10));
+  ASSERT_EQ(run("inspect " + path("foreign.safetensors") + " --rewrite " + path("new.safetensors")), 0) << errors_;
+  EXPECT_EQ(output_.rfind("digest: none", 0), 0u) << output_;
+  EXPECT_TRUE(nn::WeightsFile::read(path("new.safetensors")).has_digest);
+}
+
+TEST_F(CommandLine, AStoppedTrainingSaysWhatIsKeptAndHowToGoOn) {
+  core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
+  const std::string folder = path("my run");
+  const std::string train = " train --task " + path("tiny.yaml") + " --output '" + folder +
+                            "' --trajectories 100000 --trajectories-per-round 2 --precision f32";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", ("exec " EARLY_FUSION_PROGRAM + train + " 2>" + path("err")).c_str(), nullptr);
+    ::_exit(99);
+  }
+  for (int i = 0; i < 3000 && !fs::exists(folder + "/checkpoint.safetensors"); ++i) ::usleep(20000);
+  ::kill(child, SIGTERM);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status)) << "killed by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 143);
+  const std::string errors = core::readFile(path("err"));
+  EXPECT_NE(errors.find(" are kept in " + folder + ".\nGo on with: early_fusion train --task " + path("tiny.yaml") +
+                        " --output '" + folder + "' --resume "),
+            std::string::npos)
+      << errors;
+  EXPECT_TRUE(nn::WeightsFile::read(folder + "/checkpoint.safetensors").has_digest);
+}
+
+TEST_F(CommandLine, AFullStandardOutputIsAnError) {
+  for (const char* arguments : {" inspect --task simple", " evaluate --policy idle --episodes 1 --json -"}) {
+    const std::string command = EARLY_FUSION_PROGRAM + std::string(arguments) + " >/dev/full 2>" + path("err");
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << command;
+    EXPECT_NE(core::readFile(path("err")).find("standard output"), std::string::npos) << core::readFile(path("err"));
+  }
+}
+
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
   const std::pair<std::string, std::string> mistakes[] = {
       {"train --output " + path("r") + " --channels 20", "channels"},
@@ -191,8 +292,21 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"render --size 1008 --out " + path("x.png"),
        "size: '1008' is out of range; allowed: a multiple of 16 in [16, 992] px"},
       {"inspect --task nothing", "nothing"},
+      {"inspect", "At least 1 option from [weights"},
+      {"inspect --task simple --rewrite " + path("x.safetensors"), "--rewrite requires weights"},
+      {"inspect --task simple --world", "--task excludes --world"},
+      {"inspect " + core::shareFolder() + "/config/world.yaml", "world.yaml: not a safetensors file, but a text"},
       {"evaluate --policy expert --episodes 0", "episodes"},
+      {"evaluate --policy expert --task medium --pairs held_out", "held_out_pairs is 0"},
+      {"evaluate --policy expert --pairs some", "some"},
       {"difficulty --task simple harder", "harder"},
+      {"difficulty --seed -1", "seed: '-1' is not a whole number"},
+      {"evaluate --policy idle --seed -1", "seed: '-1' is not a whole number"},
+      {"evaluate --policy idle --seed ''", "seed: '' is not a whole number"},
+      {"render --episode -1 --out " + path("x.png"), "episode: '-1' is not a whole number"},
+      {"evaluate --policy idle --json - --trace -", "would mix on standard output"},
+      {"evaluate --policy idle --json " + path("no/x.json"), "--json: " + path("no/x.json") + ": there is no folder"},
+      {"evaluate --policy idle --episodes 1 --json /dev/full", "--json: /dev/full: cannot write"},
       {"difficulty --episodes 0", "episodes"},
       {"difficulty --world /no/such/world.yaml", "/no/such/world.yaml"},
       {"urdf camera --world /no/such/world.yaml", "/no/such/world.yaml"},

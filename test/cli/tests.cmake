@@ -3,3 +3,9 @@ target_link_libraries(cli_command_line_test ${PROJECT_NAME}_learning nlohmann_js
   opencv_imgcodecs gtest_main)
 target_compile_definitions(cli_command_line_test PRIVATE EARLY_FUSION_PROGRAM="$<TARGET_FILE:${PROJECT_NAME}_cli>")
 add_dependencies(cli_command_line_test ${PROJECT_NAME}_cli)
+
+catkin_add_gtest(cli_experiment_command_test cli/experiment_command_test.cpp)
+target_include_directories(cli_experiment_command_test PRIVATE ${PROJECT_SOURCE_DIR}/test)
+target_link_libraries(cli_experiment_command_test ${PROJECT_NAME}_experiment gtest_main)
+target_compile_definitions(cli_experiment_command_test PRIVATE EARLY_FUSION_PROGRAM="$<TARGET_FILE:${PROJECT_NAME}_cli>")
+add_dependencies(cli_experiment_command_test ${PROJECT_NAME}_cli)

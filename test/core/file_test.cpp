@@ -1,10 +1,12 @@
 #include "early_fusion/core/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <functional>
+#include <set>
 
 #include "early_fusion/core/error.h"
 
@@ -51,6 +53,48 @@ TEST_F(FileTest, ErrorsNameThePath) {
   for (const fs::path& path : {folder_ / "taken", folder_ / "file" / "below"}) {
     expectNamed(path, [&] { writeFileAtomically(path, "x"); });
   }
+}
+
+TEST_F(FileTest, ReadsOnlyRegularFilesOfPlausibleSize) {
+  const auto errorOf = [](const std::string& path, std::size_t max_bytes) -> std::string {
+    try {
+      readFile(path, max_bytes);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  ASSERT_EQ(::mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+  EXPECT_EQ(errorOf(folder_ / "fifo", 10), (folder_ / "fifo").string() + ": cannot read: it is not a regular file");
+  EXPECT_EQ(errorOf("/dev/zero", 10), "/dev/zero: cannot read: it is not a regular file");
+  EXPECT_EQ(errorOf(folder_, 10), folder_.string() + ": cannot read: it is a folder");
+  const std::string path = folder_ / "ten";
+  writeFileAtomically(path, "0123456789");
+  EXPECT_EQ(errorOf(path, 10), "no error");
+  EXPECT_EQ(errorOf(path, 9), path + ": cannot read: it has more than 9 bytes");
+  EXPECT_EQ(errorOf("/proc/self/maps", 9), "/proc/self/maps: cannot read: it has more than 9 bytes");
+}
+
+TEST_F(FileTest, ReplacingAFileFollowsLinksAndKeepsTheMode) {
+  writeFileAtomically(folder_ / "file", "old");
+  fs::permissions(folder_ / "file", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("file", folder_ / "link");
+  writeFileAtomically(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(readFile(folder_ / "file"), "new");
+  EXPECT_EQ(fs::status(folder_ / "file").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("loop", folder_ / "loop");
+  EXPECT_THROW(writeFileAtomically(folder_ / "loop", "x"), Error);
+}
+
+TEST_F(FileTest, RemovesOnlyTheTemporaryFilesOfThePath) {
+  for (const char* name : {"a", "a.tmp12", "a.tmp7", "a.tmp", "a.tmp1x", "b.tmp12"}) {
+    writeFileAtomically(folder_ / name, "");
+  }
+  removeTemporaryFiles(folder_ / "a");
+  std::set<std::string> left;
+  for (const auto& entry : fs::directory_iterator(folder_)) left.insert(entry.path().filename());
+  EXPECT_EQ(left, (std::set<std::string>{"a", "a.tmp", "a.tmp1x", "b.tmp12"}));
 }
 
 TEST_F(FileTest, RelativePathsStartAtTheFileThatNamesThem) {

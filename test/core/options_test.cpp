@@ -120,5 +120,17 @@ TEST(Options, WrittenYamlReadsBackTheSame) {
   EXPECT_EQ(read.options().toYaml(), written.options().toYaml());
 }
 
+TEST(OptionSet, ASeedIsAWholeNumberThatFits) {
+  std::uint64_t seed = 5;
+  OptionSet set("test");
+  set.add("seed", seed, "a seed");
+  for (const char* text : {"-1", "", " 1", "1.5", "123456789012345678901234567890", "18446744073709551616", "0x10"}) {
+    EXPECT_THROW(set.set("seed", text, "test"), Error) << text;
+  }
+  EXPECT_EQ(seed, 5u);
+  set.set("seed", "18446744073709551615", "test");
+  EXPECT_EQ(seed, UINT64_MAX);
+}
+
 }  // namespace
 }  // namespace early_fusion::core

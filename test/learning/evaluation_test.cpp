@@ -8,7 +8,7 @@ namespace early_fusion::learning {
 namespace {
 
 Evaluation twoEpisodes() {
-  Evaluation evaluation("weights.safetensors", "simple", 7);
+  Evaluation evaluation("weights.safetensors", sim::loadTask("simple"), 7);
   evaluation.outcomes = {{0, {1, 0.5, 2.0 / 3}, 0.75}, {1, {0, 0, 0}, 0.25}};
   return evaluation;
 }
@@ -41,6 +41,7 @@ TEST(Evaluation, JsonHoldsMeansAndEveryEpisode) {
   const auto json = nlohmann::json::parse(twoEpisodes().toJson());
   EXPECT_EQ(json["policy"], "weights.safetensors");
   EXPECT_EQ(json["task"], "simple");
+  EXPECT_EQ(json["pairs"], "all");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["episodes"], 2);
   EXPECT_DOUBLE_EQ(json["f1"], 1.0 / 3);

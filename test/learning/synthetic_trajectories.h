@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "early_fusion/core/random.h"
-#include "early_fusion/learning/trajectory.h"
+#include "early_fusion/learning/training_window.h"
 
 namespace early_fusion::learning {
 
@@ -39,14 +39,33 @@ inline Trajectory syntheticTrajectory(std::uint64_t episode) {
   return trajectory;
 }
 
-/// A Replay of synthetic trajectories, whose actions are a function of the episode.
-inline std::vector<Trajectory> replaySynthetic(const std::vector<EpisodeActions>& episodes) {
-  std::vector<Trajectory> trajectories;
-  for (const EpisodeActions& episode : episodes) {
-    trajectories.push_back(syntheticTrajectory(episode.episode));
-    for (int s = 0; s < kTinySteps; ++s) EXPECT_EQ(trajectories.back().steps[s].action, episode.actions[s]);
+/// The same with a camera that stands still in steps 2, 3 and 4.
+inline Trajectory stillTrajectory(std::uint64_t episode) {
+  Trajectory trajectory = syntheticTrajectory(episode);
+  for (int s = 3; s <= 4; ++s) {
+    trajectory.steps[s].frame = trajectory.steps[2].frame;
+    trajectory.steps[s].is_new_frame = false;
   }
-  return trajectories;
+  return trajectory;
+}
+
+/// A Replay of synthetic trajectories, whose actions are a function of the episode.
+inline void replaySynthetic(const std::vector<EpisodeActions>& episodes,
+                            const std::function<void(Trajectory)>& finished) {
+  for (const EpisodeActions& episode : episodes) {
+    Trajectory trajectory = syntheticTrajectory(episode.episode);
+    for (int s = 0; s < kTinySteps; ++s) EXPECT_EQ(trajectory.steps[s].action, episode.actions[s]);
+    finished(std::move(trajectory));
+  }
+}
+
+/// A Redraw of synthetic trajectories.
+inline std::vector<SharedFrame> redrawSynthetic(const std::vector<FrameOfTrajectory>& frames) {
+  std::vector<SharedFrame> drawn;
+  for (const FrameOfTrajectory& frame : frames) {
+    drawn.push_back(syntheticTrajectory(frame.trajectory->episode).steps[frame.step].frame);
+  }
+  return drawn;
 }
 
 }  // namespace early_fusion::learning

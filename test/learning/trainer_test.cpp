@@ -8,40 +8,10 @@
 #include "early_fusion/core/error.h"
 #include "early_fusion/learning/training_samples.h"
 #include "early_fusion/model/policy_kinds.h"
-#include "synthetic_trajectories.h"
+#include "tiny_trainer.h"
 
 namespace early_fusion::learning {
 namespace {
-
-model::PolicyOptions tinyPolicy() {
-  model::PolicyOptions options;
-  options.image_size = kTinySize;
-  options.precision = "f32";
-  options.dropout = 0.1;
-  return options;
-}
-
-TrainingOptions tinyTraining() {
-  TrainingOptions options;
-  options.trajectories = 20;
-  options.trajectories_per_round = 4;
-  options.window = 6;
-  options.epochs = 1.5;
-  options.batch_size = 5;
-  options.learning_rate = 1e-2;
-  options.final_learning_rate = 1e-3;
-  options.requests_per_frame = 2;
-  return options;
-}
-
-std::unique_ptr<Trainer> makeTrainer(const TrainingOptions& options = tinyTraining()) {
-  return std::make_unique<Trainer>(tinyPolicy(), options, tinyVocabulary(), 3);
-}
-
-RoundStatistics runRound(Trainer& trainer) {
-  while (!trainer.roundDue()) trainer.add(syntheticTrajectory(trainer.trajectoriesSeen()));
-  return trainer.trainRound();
-}
 
 TEST(Trainer, RoundsAreDueAfterTheSetNumberOfTrajectoriesAndTheLastMayBeShorter) {
   TrainingOptions options = tinyTraining();
@@ -59,9 +29,10 @@ TEST(Trainer, RoundsAreDueAfterTheSetNumberOfTrajectoriesAndTheLastMayBeShorter)
 TEST(Trainer, TheWindowKeepsTheMostRecentTrajectories) {
   const auto trainer = makeTrainer();
   for (int i = 0; i < 3; ++i) runRound(*trainer);
-  ASSERT_EQ(trainer->window().size(), 6u);
-  EXPECT_EQ(trainer->window().front().episode, 6u);
-  EXPECT_EQ(trainer->window().back().episode, 11u);
+  const std::deque<Trajectory>& window = trainer->window().trajectories();
+  ASSERT_EQ(window.size(), 6u);
+  EXPECT_EQ(window.front().episode, 6u);
+  EXPECT_EQ(window.back().episode, 11u);
 }
 
 TEST(Trainer, LearnsLabelsThatTheFramesShow) {
@@ -95,7 +66,7 @@ TEST(Trainer, TheLossOfARoundOfOneBatchIsThatOfItsTrajectoriesSamples) {
     trajectory.steps[2].action = trajectory.steps[2].label.action;
     trainer.add(std::move(trajectory));
   }
-  const std::deque<Trajectory> window = trainer.window();
+  const std::deque<Trajectory> window = trainer.window().trajectories();
   std::vector<model::Sample> samples;
   for (const Trajectory& trajectory : window) {
     for (std::size_t s = 0; s < trajectory.steps.size(); ++s) {
@@ -119,10 +90,12 @@ TEST(Trainer, TheSameSeedGivesTheSameWeights) {
 }
 
 TEST(Trainer, ARestoredTrainerGoesOnBitForBit) {
-  for (const double weight_ema : {0.0, 0.9}) {
+  for (const auto& [weight_ema, dagger] : {std::pair{0.0, false}, {0.9, false}, {0.0, true}, {0.9, true}}) {
     TrainingOptions options = tinyTraining();
     options.weight_ema = weight_ema;
     options.batch_renorm_start = 12;
+    options.restart_policy = dagger;
+    if (dagger) options.window = 0;
     const auto whole = makeTrainer(options);
     runRound(*whole);
     runRound(*whole);

@@ -168,6 +168,31 @@ TEST_F(TrajectoryRecorderTest, WhereTheFrameStaysTheSameOnlyThePolicysOwnRequest
   EXPECT_GT(recorder.record(state, frameAt(1)).labelled_requests.size(), 1u);
 }
 
+TEST_F(TrajectoryRecorderTest, NoFurtherRequestHasAHeldOutPair) {
+  const sim::PairSplit split{0.5, 1};
+  const sim::HeldOutPairs held_out(shippedWorld().objects.size(), split);
+  const auto furtherRequests = [&](const sim::Task& task) {
+    task_ = task;
+    episode_ = sim::Episode(shippedWorld(), {task_, 2, 6});
+    std::vector<core::Request> requests;
+    for (const TrajectoryStep& step : recordAll(1).steps) {
+      for (std::size_t i = 1; i < step.labelled_requests.size(); ++i) {
+        requests.push_back(step.labelled_requests[i].request);
+      }
+    }
+    return requests;
+  };
+  const auto count = [&](const std::vector<core::Request>& requests) {
+    return std::count_if(requests.begin(), requests.end(),
+                         [&](const auto& request) { return held_out.areIn(request); });
+  };
+  const sim::Task hard = task_;
+  EXPECT_GT(count(furtherRequests(hard)), 50);
+  const std::vector<core::Request> trained = furtherRequests(sim::withPairs("trained", split, hard));
+  EXPECT_EQ(count(trained), 0);
+  EXPECT_GT(std::count_if(trained.begin(), trained.end(), [](const auto& request) { return request.size() > 1; }), 20);
+}
+
 TEST_F(TrajectoryRecorderTest, KnowsWhenThePolicySawTheSameAgain) {
   TrajectoryRecorder recorder({task_, 1, 6}, episode_);
   sim::EpisodeState state = episode_.state();

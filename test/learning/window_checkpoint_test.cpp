@@ -10,16 +10,21 @@ namespace {
 
 constexpr int kMaxTrajectories = 4;
 
+TrainingWindow emptyWindow() { return {0, 0, redrawSynthetic}; }
+
 nn::WeightsFile storedWindow() {
   nn::WeightsFile file;
-  storeWindow({syntheticTrajectory(7), syntheticTrajectory(8), syntheticTrajectory(9)}, file);
+  TrainingWindow window = emptyWindow();
+  for (const std::uint64_t episode : {7, 8, 9}) window.add(syntheticTrajectory(episode));
+  storeWindow(window, file);
   return nn::WeightsFile::parse(file.serialize(), "file");
 }
 
 std::string restoreError(const nn::WeightsFile& file, const Replay& replay = replaySynthetic,
                          int max_trajectories = kMaxTrajectories) {
+  TrainingWindow window = emptyWindow();
   try {
-    restoreWindow(file, "broken.safetensors", max_trajectories, replay);
+    restoreWindow(file, "broken.safetensors", max_trajectories, replay, window);
   } catch (const core::Error& error) {
     return error.what();
   }
@@ -28,11 +33,13 @@ std::string restoreError(const nn::WeightsFile& file, const Replay& replay = rep
 
 TEST(WindowCheckpoint, AReplayOfTheStoredActionsIsTheWindow) {
   std::vector<EpisodeActions> replayed;
-  const std::deque<Trajectory> window =
-      restoreWindow(storedWindow(), "file", kMaxTrajectories, [&](const std::vector<EpisodeActions>& episodes) {
-        replayed = episodes;
-        return replaySynthetic(episodes);
-      });
+  TrainingWindow restored = emptyWindow();
+  const Replay replay = [&](const auto& episodes, const auto& finished) {
+    replayed = episodes;
+    replaySynthetic(episodes, finished);
+  };
+  restoreWindow(storedWindow(), "file", kMaxTrajectories, replay, restored);
+  const std::deque<Trajectory>& window = restored.trajectories();
   ASSERT_EQ(window.size(), 3u);
   ASSERT_EQ(replayed.size(), 3u);
   for (std::uint64_t i = 0; i < 3; ++i) {
@@ -44,8 +51,10 @@ TEST(WindowCheckpoint, AReplayOfTheStoredActionsIsTheWindow) {
 
 TEST(WindowCheckpoint, AnEmptyWindowIsRestored) {
   nn::WeightsFile file;
-  storeWindow({}, file);
-  EXPECT_TRUE(restoreWindow(file, "file", kMaxTrajectories, replaySynthetic).empty());
+  TrainingWindow window = emptyWindow();
+  storeWindow(window, file);
+  restoreWindow(file, "file", kMaxTrajectories, replaySynthetic, window);
+  EXPECT_TRUE(window.trajectories().empty());
 }
 
 TEST(WindowCheckpoint, TensorsOfDifferentNumbersOfTrajectoriesAreRefused) {
@@ -63,10 +72,11 @@ TEST(WindowCheckpoint, TensorsOfDifferentNumbersOfTrajectoriesAreRefused) {
 
 TEST(WindowCheckpoint, ReplayedEpisodesThatDifferFromTheStoredOnesAreRefused) {
   const auto error = [](const std::function<void(TrajectoryStep&)>& change) {
-    return restoreError(storedWindow(), [&](const std::vector<EpisodeActions>& episodes) {
-      std::vector<Trajectory> trajectories = replaySynthetic(episodes);
-      change(trajectories.back().steps.front());
-      return trajectories;
+    return restoreError(storedWindow(), [&](const auto& episodes, const auto& finished) {
+      replaySynthetic(episodes, [&](Trajectory trajectory) {
+        if (trajectory.episode == episodes.back().episode) change(trajectory.steps.front());
+        finished(std::move(trajectory));
+      });
     });
   };
   const std::string refused = "broken.safetensors: the replayed episodes differ";

@@ -11,7 +11,9 @@ early_fusion_add_test(model policy_options_test)
 early_fusion_add_test(model request_encoder_test)
 early_fusion_add_test(model saliency_test)
 early_fusion_add_test(model sample_batch_test)
+early_fusion_add_test(model second_branch_test)
 early_fusion_add_test(model vision_trunk_test)
+early_fusion_add_test(model warm_start_test)
 
 # The second implementation that the network is checked against.
 foreach(name libtorch_golden_test libtorch_parity_test)

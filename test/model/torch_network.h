@@ -71,8 +71,7 @@ struct TorchNetwork : torch::nn::Module {
     if (!attends_) return torch::cat({map.flatten(1), goal}, 1);
     const torch::Tensor regions = map.flatten(2);                                    // (N,C,regions)
     const torch::Tensor scores = torch::bmm(goal.unsqueeze(1), regions).squeeze(1);  // (N,regions)
-    const torch::Tensor weights =
-        options_.kind == "attention_map" ? scores / scores.size(1) : torch::softmax(scores, 1);
+    const torch::Tensor weights = options_.kind == "attention_map" ? scores : torch::softmax(scores, 1);
     return torch::cat({torch::bmm(regions, weights.unsqueeze(2)).squeeze(2), goal}, 1);
   }
 

@@ -141,10 +141,10 @@ inline NaiveAttention naiveAttentionPooling(AttentionWeights kind, const Numbers
     double score = 0;
     for (std::size_t c = 0; c < channels; ++c) score += query[c] * map[c * regions + i];
     result.weights[i] = kind == AttentionWeights::kSoftmax ? std::exp(score) : score;
-    sum += kind == AttentionWeights::kSoftmax ? result.weights[i] : 1;
+    sum += result.weights[i];
   }
   for (std::size_t i = 0; i < regions; ++i) {
-    result.weights[i] /= sum;
+    if (kind == AttentionWeights::kSoftmax) result.weights[i] /= sum;
     for (std::size_t c = 0; c < channels; ++c) result.pooled[c] += result.weights[i] * map[c * regions + i];
   }
   return result;

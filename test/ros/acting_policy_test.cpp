@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/random.h"
 #include "early_fusion/model/policy_file.h"
@@ -93,6 +95,24 @@ TEST_F(ActingPolicyTest, AnUnknownItemIsNamedWithTheKnownOnesAndLeavesTheFramesA
     EXPECT_NE(std::string(error.what()).find("bowl, mug"), std::string::npos) << error.what();
   }
   EXPECT_EQ(acting_.decide(frame(2), {"mug"}, 7, 1).frames, 2);
+}
+
+TEST_F(ActingPolicyTest, NamesTheRequestedItemWhoseOwnRequestMakesAnActionLikeliest) {
+  const core::Image a = frame(1), b = frame(2);
+  acting_.decide(a, {"mug", "bowl", "mug"}, 7, 0);
+  acting_.decide(b, {"mug", "bowl", "mug"}, 7, 1);
+  std::set<std::string> named;
+  for (const core::Action action : core::kAllActions) {
+    const float bowl = expected({b, a}, {0})[static_cast<int>(action)];
+    const float mug = expected({b, a}, {1})[static_cast<int>(action)];
+    const LikelyItem item = acting_.likeliestItem(action);
+    EXPECT_EQ(item.name, bowl > mug ? "bowl" : "mug");
+    EXPECT_EQ(item.probability, std::max(bowl, mug));
+    named.insert(item.name);
+  }
+  EXPECT_EQ(named.size(), 2u) << "each is the likeliest for some action, because probabilities add up to 1";
+  acting_.decide(b, {"bowl"}, 7, 1);
+  EXPECT_EQ(acting_.likeliestItem(core::Action::kCollect).name, "bowl");
 }
 
 TEST_F(ActingPolicyTest, DrawnActionsAreAFunctionOfSeedEpisodeAndStep) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "early_fusion/core/error.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -26,7 +26,7 @@ class ConversionsTest : public testing::Test {
     return sceneState(scene, world_->objects.vocabulary(), world_->rig.lattice());
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   const sim::EpisodeKey key_{sim::loadTask("hard"), 5, 9};
   sim::Episode episode_{*world_, key_};
@@ -94,6 +94,22 @@ TEST_F(ConversionsTest, AGoalNamesItsFirstEpisode) {
   EXPECT_EQ(key.number, 9u);
   goal.max_instances = 4000000000u;
   EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("max_instances is 4000000000"), std::string::npos);
+}
+
+TEST_F(ConversionsTest, AGoalNamesTheRequestsOfItsEpisodes) {
+  RunEpisodesGoal goal;
+  goal.task = "hard";
+  EXPECT_EQ(firstEpisode(goal).task.pairs, sim::PairChoice::kAll);
+  setPairs(sim::withPairs("held_out", {0.25, 4}, sim::loadTask("hard")), goal);
+  const sim::Task task = firstEpisode(goal).task;
+  EXPECT_EQ(task.pairs, sim::PairChoice::kHeldOut);
+  EXPECT_EQ(task.pair_split.held_out_pairs, 0.25);
+  EXPECT_EQ(task.pair_split.held_out_pairs_seed, 4u);
+  goal.held_out_pairs = 2;
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("held_out_pairs: '2' is out of range"), std::string::npos);
+  goal.held_out_pairs = 0.5;
+  goal.pairs = "some";
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("'some'"), std::string::npos);
 }
 
 TEST_F(ConversionsTest, AScenesFieldsNameItsEpisode) {

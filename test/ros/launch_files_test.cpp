@@ -17,7 +17,8 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
-#include "small_session.h"
+#include "early_fusion/ros/virtual_robot/virtual_robot_node.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -40,7 +41,8 @@ const std::vector<core::Option>& optionsOfNode(const std::string& type) {
       {"request_node", optionsOf<RequestNode>()},
       {"session_monitor_node", optionsOf<SessionMonitorNode>()},
       {"simulator_node", optionsOf<SimulatorNode>()},
-      {"trainer_node", optionsOf<TrainerNode>()}};
+      {"trainer_node", optionsOf<TrainerNode>()},
+      {"virtual_robot_node", optionsOf<VirtualRobotNode>()}};
   return known.at(type);
 }
 
@@ -141,7 +143,7 @@ class Launch : public testing::Test {
     return files_.path(name);
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
 };
 
 TEST_F(Launch, TrainReachesEveryOptionOfTrainingThroughOptions) {

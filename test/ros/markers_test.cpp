@@ -6,7 +6,7 @@
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/expert/greedy_expert.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -18,7 +18,7 @@ class MarkersTest : public testing::Test {
                          [&](const visualization_msgs::Marker& marker) { return marker.ns == ns; });
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   const sim::Task task_ = sim::loadTask("medium");
   sim::Episode episode_{*world_, {task_, 1, 0}};

@@ -15,7 +15,8 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
-#include "small_session.h"
+#include "early_fusion/ros/virtual_robot/virtual_robot_node.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -47,22 +48,24 @@ TEST_P(NodeParameters, AMistakeIsNamedAndTheNodeEnds) {
 
 INSTANTIATE_TEST_SUITE_P(
     Nodes, NodeParameters,
-    testing::Values(Case{"simulator_node", {"_rate:=-3"}, {"rate", "-3", "[0, 10000] Hz"}},
-                    Case{"simulator_node", {"_free_run:=perhaps"}, {"free_run", "perhaps", "true | false"}},
-                    Case{"simulator_node", {"_tusk:=hard"}, {"tusk", "unknown", "task"}},
-                    Case{"simulator_node", {"_task:=impossible"}, {"impossible", "hard, medium, simple"}},
-                    Case{"simulator_node", {"_world:=/nowhere.yaml"}, {"/nowhere.yaml"}},
-                    Case{"policy_node", {"_weights:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
-                    Case{"policy_node", {"_mode:=guess"}, {"mode", "guess", "argmax | sample"}},
-                    Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
-                    Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_chanels:=32"}, {"'chanels'", "known are", "channels"}},
-                    Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
-                    Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
-                    Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
-                    Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
-                    Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
+    testing::Values(
+        Case{"simulator_node", {"_rate:=-3"}, {"rate", "-3", "[0, 10000] Hz"}},
+        Case{"simulator_node", {"_free_run:=perhaps"}, {"free_run", "perhaps", "true | false"}},
+        Case{"simulator_node", {"_tusk:=hard"}, {"tusk", "unknown", "task"}},
+        Case{"simulator_node", {"_task:=impossible"}, {"impossible", "hard, medium, simple, three_of_eight"}},
+        Case{"simulator_node", {"_world:=/nowhere.yaml"}, {"/nowhere.yaml"}},
+        Case{"policy_node", {"_weights:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
+        Case{"policy_node", {"_mode:=guess"}, {"mode", "guess", "argmax | sample"}},
+        Case{"policy_node", {"_annotated_scale:=2.5"}, {"annotated_scale", "2.5", "[1, 16]"}},
+        Case{"trainer_node", {"_preset:=fast"}, {"output", "folder"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_channels:=7"}, {"channels", "7"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_chanels:=32"}, {"'chanels'", "known are", "channels"}},
+        Case{"trainer_node", {"_output:=/tmp/x", "_preset:=slow"}, {"slow", "fast"}},
+        Case{"evaluator_node", {"_episodes:=0"}, {"episodes", "0", "[1, 1000000]"}},
+        Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
+        Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
+        Case{"virtual_robot_node", {"_encoding:=jpeg"}, {"encoding", "jpeg", "bgr8 | rgb8"}},
+        Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
 
 TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
   ::ros::init(::ros::M_string(), "node_parameters");
@@ -95,6 +98,18 @@ TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
   while (!is_up()) ASSERT_FALSE(node.ends(0.05)) << node.output();
 }
 
+TEST(NodeStart, SaysThatSimulatedTimeStandsStill) {
+  ::ros::init(::ros::M_string(), "node_parameters");
+  const SmallSession files;
+  ::ros::param::set("/use_sim_time", true);
+  ChildProcess node({std::string(EARLY_FUSION_NODES) + "/pan_tilt_driver_node", "__name:=timeless"}, {},
+                    files.path("log"));
+  while (node.output().find("/use_sim_time is true") == std::string::npos) {
+    ASSERT_FALSE(node.ends(0.1)) << node.output();
+  }
+  ::ros::param::del("/use_sim_time");
+}
+
 /// Checks the --help of the program `name` against the options that its node has.
 template <class Node>
 void expectHelp(const std::string& name) {
@@ -124,6 +139,7 @@ TEST(NodeHelp, ListsEveryParameterOfEveryNodeWithRangeUnitAndDefault) {
   expectHelp<RequestNode>("request_node");
   expectHelp<PanTiltDriverNode>("pan_tilt_driver_node");
   expectHelp<SessionMonitorNode>("session_monitor_node");
+  expectHelp<VirtualRobotNode>("virtual_robot_node");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "early_fusion/core/file.h"
+#include "early_fusion/learning/retention.h"
 #include "early_fusion/learning/session_options.h"
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
@@ -15,6 +16,7 @@
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
 #include "early_fusion/ros/trainer/trainer_node.h"
+#include "early_fusion/ros/virtual_robot/virtual_robot_node.h"
 #include "early_fusion/sim/task.h"
 #include "early_fusion/world/world.h"
 
@@ -125,6 +127,11 @@ TEST(OptionTables, TrainingHasTheValuesOfThePresets) {
   }
 }
 
+TEST(OptionTables, RetentionHasEveryOptionOfAMeasurement) {
+  const Table table = tablesIn(document("retention.md"));
+  for (const core::Option& option : optionsOf<learning::RetentionOptions>()) expectRows(table, option);
+}
+
 TEST(OptionTables, ExtendingHasEveryKeyOfATaskAndOfAWorld) {
   const Table task = tablesIn(section(document("extending.md"), "## A task"));
   for (const core::Option& option : optionsOf<sim::Task>()) expectRows(task, option);
@@ -150,8 +157,9 @@ TEST(OptionTables, RosHasEveryParameterOfEveryNode) {
   expectParameters<TrainerNode>("## trainer_node", optionsOf<learning::SessionOptions>());
   expectParameters<EvaluatorNode>("## evaluator_node");
   expectParameters<SessionMonitorNode>("## session_monitor_node");
-  expectParameters<RequestNode>("## A real camera");
-  expectParameters<PanTiltDriverNode>("## A real camera");
+  expectParameters<RequestNode>("## request_node");
+  expectParameters<PanTiltDriverNode>("## pan_tilt_driver_node");
+  expectParameters<VirtualRobotNode>("## virtual_robot_node");
   EXPECT_TRUE(tablesIn(section(document("ros.md"), "## simulator_node")).count("diagnostic_period"));
 }
 
@@ -161,7 +169,8 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
   for (const auto& options :
        {optionsOf<SimulatorNode::Options>(), optionsOf<PolicyNode::Options>(), optionsOf<TrainerNode::Options>(),
         optionsOf<EvaluatorNode::Options>(), optionsOf<SessionMonitorNode::Options>(),
-        optionsOf<RequestNode::Options>(), optionsOf<PanTiltDriverNode::Options>(), optionsOf<sim::Task>(),
+        optionsOf<RequestNode::Options>(), optionsOf<learning::RetentionOptions>(),
+        optionsOf<PanTiltDriverNode::Options>(), optionsOf<VirtualRobotNode::Options>(), optionsOf<sim::Task>(),
         optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }

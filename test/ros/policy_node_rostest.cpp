@@ -6,10 +6,12 @@
 #include <early_fusion/SaveWeights.h>
 #include <early_fusion/Weights.h>
 #include <gtest/gtest.h>
+#include <rosgraph_msgs/Log.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include <algorithm>
 #include <array>
-#include <boost/make_shared.hpp>
 #include <filesystem>
 
 #include "early_fusion/core/random.h"
@@ -18,7 +20,7 @@
 #include "early_fusion/ros/policy/acting_policy.h"
 #include "early_fusion/ros/shared/camera_image.h"
 #include "early_fusion/ros/shared/topics.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 #include "spin_until.h"
 
 namespace early_fusion::nodes {
@@ -100,7 +102,7 @@ class PolicyNodeTest : public testing::Test {
   std::vector<ActionConstPtr> actions_;
   PolicyStatusConstPtr status_;
   nn::WeightsFile file_;
-  const SmallSession files_;
+  const learning::SmallSession files_;
 };
 
 TEST_F(PolicyNodeTest, AnswersWithTheImagesStampAndTheNetworksProbabilities) {
@@ -143,6 +145,33 @@ TEST_F(PolicyNodeTest, AnswersAStepThatIsPublishedAgainAsBefore) {
   EXPECT_EQ(twice->frames, 2);
 }
 
+TEST_F(PolicyNodeTest, SaysWhichRequestedItemACollectOrRemoveIsFor) {
+  ASSERT_TRUE(publishWeights("named", "sample"));
+  ActingPolicy expected;
+  expected.load(file_, "test", {"sample", 11, "f32"});
+  int picks = 0, others = 0;
+  for (std::uint32_t step = 0; picks == 0 || others == 0; ++step) {
+    ASSERT_LT(step, 200u);
+    const sensor_msgs::Image image = makeImage(kSize, kSize, 800 + step);
+    ask(image, 30, step, {"mug", "bowl"});
+    const ActionConstPtr action = answer();
+    ASSERT_TRUE(action);
+    core::Image frame(kSize, kSize);
+    frame.rgb = image.data;
+    expected.decide(frame, {"mug", "bowl"}, 30, step);
+    if (action->name == "COLLECT" || action->name == "REMOVE") {
+      ++picks;
+      const LikelyItem item = expected.likeliestItem(core::actionFromName(action->name));
+      EXPECT_EQ(action->item, item.name);
+      EXPECT_EQ(action->item_probability, item.probability);
+    } else {
+      ++others;
+      EXPECT_EQ(action->item, "");
+      EXPECT_EQ(action->item_probability, 0);
+    }
+  }
+}
+
 TEST_F(PolicyNodeTest, TakesACamerasImageOfAnySizeAndOrderOfColours) {
   ASSERT_TRUE(publishWeights("camera"));
   ActingPolicy expected;
@@ -153,7 +182,7 @@ TEST_F(PolicyNodeTest, TakesACamerasImageOfAnySizeAndOrderOfColours) {
     sensor_msgs::Image bgr = rgb;
     bgr.encoding = "bgr8";
     for (std::size_t i = 0; i < bgr.data.size(); i += 3) std::swap(bgr.data[i], bgr.data[i + 2]);
-    const core::Image seen = policyImage(boost::make_shared<sensor_msgs::Image>(rgb), crop, kSize);
+    const core::Image seen = policyImage(rgb, {(width - crop) / 2, (height - crop) / 2, crop, crop, ""}, kSize);
     for (sensor_msgs::Image image : {rgb, bgr}) {
       image.header.stamp.nsec = 2000 + ++episode;
       ask(image, episode, 0);
@@ -187,6 +216,36 @@ TEST_F(PolicyNodeTest, AnImageWithoutARequestOfItsStampIsNotAnswered) {
   request.items = {"mug"};
   request_publisher_.publish(request);
   EXPECT_FALSE(answer(0.5));
+}
+
+TEST_F(PolicyNodeTest, GoesOnWhenTheTimeJumpsBack) {
+  ASSERT_TRUE(publishWeights("loop"));
+  for (std::uint32_t i = 0; i < 40; ++i) {  // images that nobody asks about, more than any queue
+    sensor_msgs::Image image = makeImage(kSize, kSize, i);
+    image.header.stamp = ::ros::Time(1000, i);
+    image_publisher_.publish(image);
+    spinFor(0.002);
+  }
+  for (std::uint32_t step = 0; step < 3; ++step) {
+    sensor_msgs::Image image = makeImage(kSize, kSize, 510 + step);
+    image.header.stamp = ::ros::Time(10, step);
+    ask(image, 0, step);
+    const ActionConstPtr action = answer();
+    ASSERT_TRUE(action) << step;
+    EXPECT_EQ(action->frames, step + 1);
+  }
+}
+
+TEST_F(PolicyNodeTest, AnswersImagesWhoseStampsAreAllZero) {
+  ASSERT_TRUE(publishWeights("zero"));
+  for (std::uint32_t step = 0; step < 3; ++step) {
+    sensor_msgs::Image image = makeImage(kSize, kSize, 520 + step);
+    image.header.stamp = ::ros::Time();
+    ask(image, 11, step);
+    const ActionConstPtr action = answer();
+    ASSERT_TRUE(action) << step;
+    EXPECT_EQ(action->step, step);
+  }
 }
 
 TEST_F(PolicyNodeTest, BrokenWeightsLeaveTheOldOnesActing) {
@@ -237,6 +296,62 @@ TEST_F(PolicyNodeTest, DrawsAnAnnotatedImageForWhoLooks) {
   EXPECT_EQ(annotated->header.stamp, image.header.stamp);
   EXPECT_EQ(annotated->width, 3u * kSize);
   EXPECT_EQ(annotated->encoding, "rgb8");
+}
+
+/// The warnings of the policy node.
+class PolicyNodeWarnings : public PolicyNodeTest {
+ protected:
+  PolicyNodeWarnings() {
+    log_subscriber_ = node_.subscribe<rosgraph_msgs::Log>("/rosout", 100, [this](const rosgraph_msgs::LogConstPtr& m) {
+      if (m->level == rosgraph_msgs::Log::WARN) warnings_.push_back(m->msg);
+    });
+  }
+
+  int countOf(const std::string& text) const {
+    return std::count_if(warnings_.begin(), warnings_.end(),
+                         [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+  }
+
+  ::ros::Subscriber log_subscriber_;
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(PolicyNodeWarnings, AMissingCameraInfoIsNamedWithTheTopicsThatLookLikeIt) {
+  const ::ros::Publisher other = node_.advertise<sensor_msgs::CameraInfo>("usb_cam/camera_info", 1);
+  ASSERT_TRUE(publishWeights("waits"));
+  ask(makeImage(kSize, kSize, 800), 30, 0);
+  ASSERT_TRUE(answer());
+  EXPECT_TRUE(spinUntil([&] { return countOf("no camera_info on /camera/camera_info") > 0; }, 40));
+  EXPECT_GT(countOf("/usb_cam/camera_info (by " + ::ros::this_node::getName()), 0);
+}
+
+// The last test, because the node keeps the camera_info.
+TEST_F(PolicyNodeWarnings, TheCropFollowsCameraInfoAndANarrowViewIsToldOnce) {
+  ::ros::Publisher publisher = node_.advertise<sensor_msgs::CameraInfo>(kCameraInfoTopic, 1, true);
+  ASSERT_TRUE(publishWeights("crop"));
+  ActingPolicy expected;
+  expected.load(file_, "test", {"argmax", 11, "f32"});
+  std::uint64_t episode = 40;
+  for (const auto& [focal_length, edge] : {std::pair(300, 346), std::pair(772, 480)}) {
+    sensor_msgs::CameraInfo info;
+    info.width = 640;
+    info.height = 480;
+    info.K = {1.0 * focal_length, 0, 319.5, 0, 1.0 * focal_length, 239.5, 0, 0, 1};
+    publisher.publish(info);
+    ASSERT_TRUE(spinUntil([&] { return publisher.getNumSubscribers() > 0; }));
+    spinFor(0.3);  // until the node has it
+    for (int repeat = 0; repeat < 3; ++repeat) {
+      const sensor_msgs::Image image = makeImage(640, 480, 900 + ++episode);
+      ask(image, episode, 0);
+      const ActionConstPtr action = answer();
+      ASSERT_TRUE(action);
+      const core::Image seen = policyImage(image, {(640 - edge) / 2, (480 - edge) / 2, edge, edge, ""}, kSize);
+      EXPECT_EQ(action->probabilities, expected.decide(seen, {"mug"}, episode, 0).probabilities) << focal_length;
+    }
+  }
+  EXPECT_TRUE(spinUntil([&] { return countOf("35 degrees") > 0; }));
+  spinFor(0.3);
+  EXPECT_EQ(countOf("35 degrees"), 1);
 }
 
 }  // namespace

@@ -1,80 +1,22 @@
-// The nodes between a real pan-tilt camera and the policy. The test replaces both.
-#include <early_fusion/Action.h>
-#include <early_fusion/Request.h>
-#include <early_fusion/SetRequest.h>
-#include <gtest/gtest.h>
-#include <sensor_msgs/Image.h>
-#include <sensor_msgs/JointState.h>
-#include <std_msgs/Float64.h>
+// The request node, with a test in the place of camera, policy, unit and robot.
+#include <visualization_msgs/MarkerArray.h>
 
-#include <optional>
-
-#include "early_fusion/core/file.h"
-#include "early_fusion/ros/shared/topics.h"
-#include "early_fusion/world/camera_rig.h"
-#include "spin_until.h"
+#include "real_camera_fixture.h"
 
 namespace early_fusion::nodes {
 namespace {
-
-class RealCameraTest : public testing::Test {
- protected:
-  RealCameraTest() {
-    image_publisher_ = node_.advertise<sensor_msgs::Image>(kImageTopic, 10);
-    action_publisher_ = node_.advertise<Action>(kActionTopic, 10);
-    joint_publisher_ = node_.advertise<sensor_msgs::JointState>(kJointStatesTopic, 10);
-    request_subscriber_ =
-        node_.subscribe<Request>(kRequestTopic, 10, [this](const RequestConstPtr& m) { requests_.push_back(m); });
-    pan_subscriber_ = node_.subscribe<std_msgs::Float64>(
-        "pan_position_controller/command", 10, [this](const std_msgs::Float64ConstPtr& m) { pan_ = m->data; });
-    tilt_subscriber_ = node_.subscribe<std_msgs::Float64>(
-        "tilt_position_controller/command", 10, [this](const std_msgs::Float64ConstPtr& m) { tilt_ = m->data; });
-  }
-
-  void SetUp() override {
-    ASSERT_TRUE(spinUntil([&] {
-      return image_publisher_.getNumSubscribers() > 0 && action_publisher_.getNumSubscribers() > 1 &&
-             joint_publisher_.getNumSubscribers() > 0 && request_subscriber_.getNumPublishers() > 0 &&
-             pan_subscriber_.getNumPublishers() > 0 && tilt_subscriber_.getNumPublishers() > 0;
-    }));
-  }
-
-  /// Sends images, as a camera does, until one of them has a request.
-  RequestConstPtr nextRequest() {
-    requests_.clear();
-    static std::uint32_t stamp = 0;
-    const bool asked = spinUntil([&] {
-      sensor_msgs::Image image;
-      image.header.stamp = ::ros::Time(60, ++stamp);
-      image_publisher_.publish(image);
-      return !requests_.empty();
-    });
-    return asked ? requests_.front() : nullptr;
-  }
-
-  void act(const std::string& name, const std_msgs::Header& header) {
-    Action action;
-    action.header = header;
-    action.name = name;
-    action_publisher_.publish(action);
-  }
-
-  ::ros::NodeHandle node_;
-  ::ros::Publisher image_publisher_, action_publisher_, joint_publisher_;
-  ::ros::Subscriber request_subscriber_, pan_subscriber_, tilt_subscriber_;
-  std::vector<RequestConstPtr> requests_;
-  std::optional<double> pan_, tilt_;
-};
 
 TEST_F(RealCameraTest, AnImageIsAskedAboutAndTheNextStepFollowsTheAction) {
   const RequestConstPtr first = nextRequest();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->episode, 0u);
-  EXPECT_EQ(first->items, (std::vector<std::string>{"mug", "bowl"}));
+  EXPECT_EQ(first->step, 0u);
+  EXPECT_EQ(first->items, (Items{"mug", "bowl"}));
   act("IDLE", first->header);
+  spinFor(0.1);
   const RequestConstPtr second = nextRequest();
   ASSERT_TRUE(second);
-  EXPECT_EQ(second->step, first->step + 1);
+  EXPECT_EQ(second->step, 1u);
   EXPECT_GT(second->header.stamp, first->header.stamp);
 }
 
@@ -84,59 +26,219 @@ TEST_F(RealCameraTest, WithoutAnAnswerTheSameStepIsAskedAgainAboutANewImage) {
   ASSERT_TRUE(first && second);
   EXPECT_EQ(second->step, first->step);
   EXPECT_GT(second->header.stamp, first->header.stamp);
-  act("IDLE", second->header);
 }
 
-TEST_F(RealCameraTest, TheServiceChangesWhatIsAskedFor) {
-  SetRequest call;
-  call.request.items = {"apple"};
-  ASSERT_TRUE(::ros::service::call(kSetRequestService, call));
-  EXPECT_TRUE(call.response.success);
-  const RequestConstPtr request = nextRequest();
-  ASSERT_TRUE(request);
-  EXPECT_EQ(request->items, (std::vector<std::string>{"apple"}));
-  act("IDLE", request->header);
-  call.request.items = {"mug", "bowl"};
-  ::ros::service::call(kSetRequestService, call);
-}
-
-TEST_F(RealCameraTest, MovesAreCommandsOfTwoDegreesFromWhereTheJointsAreWithinTheirLimits) {
-  const auto rig = world::CameraRig::load(core::shareFolder() + "/urdf/pan_tilt_camera.urdf", "pan_joint", "tilt_joint",
-                                          "camera_optical_frame");
-  std_msgs::Header header;
-  act("PAN_LEFT", header);
-  spinFor(0.2);
-  EXPECT_FALSE(pan_) << "commanded before it was known how the joints stand";
-
-  // The joints may be in any order, among others; the pan joint stands one step from its limit.
-  sensor_msgs::JointState states;
-  states.name = {"elbow", "tilt_joint", "pan_joint"};
-  states.position = {1.0, (rig.lattice().lowest.tilt + 3) * world::kStepRad + 0.001,
-                     (rig.lattice().highest.pan - 1) * world::kStepRad - 0.001};
-  joint_publisher_.publish(states);
-  spinFor(0.2);
-  act("TILT_DOWN", header);
-  ASSERT_TRUE(spinUntil([&] { return tilt_ && pan_; }));
-  EXPECT_NEAR(*tilt_, (rig.lattice().lowest.tilt + 4) * world::kStepRad, 1e-9);
-  act("PAN_LEFT", header);
-  const double limit = rig.lattice().highest.pan * world::kStepRad;
-  ASSERT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit) < 1e-9; }));
-  for (const char* name : {"PAN_LEFT", "COLLECT", "JUMP"}) act(name, header);
-  spinFor(0.2);
-  EXPECT_NEAR(*pan_, limit, 1e-9);
-  act("PAN_RIGHT", header);
-  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + world::kStepRad) < 1e-9; }));
-
-  // An action that arrives after the next request is dropped. The action for the next request is carried out.
+TEST_F(RealCameraTest, ATimeThatJumpsBackBeginsANewEpisode) {
   const RequestConstPtr first = nextRequest();
+  ASSERT_TRUE(first);
+  act("IDLE", first->header);
   const RequestConstPtr second = nextRequest();
-  ASSERT_TRUE(first && second);
-  const double tilt = *tilt_;
-  spinFor(0.5);  // the driver has the requests over a connection of its own
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->step, first->step + 1);
+  sensor_msgs::Image earlier;
+  earlier.header.frame_id = image_frame_;
+  earlier.header.stamp = ::ros::Time(10);
+  requests_.clear();
+  ASSERT_TRUE(publishUntil([&] {
+    image_publisher_.publish(earlier);
+    return !requests_.empty() && requests_.back()->header.stamp == earlier.header.stamp;
+  }));
+  EXPECT_EQ(requests_.back()->step, 0u);
+}
+
+TEST_F(RealCameraTest, TheServiceChangesWhatIsAskedForAndBeginsAnEpisode) {
+  const RequestConstPtr first = nextRequest();
+  ASSERT_TRUE(first);
+  act("IDLE", first->header);
+  spinFor(0.1);
+  ASSERT_TRUE(request({"apple"}));
+  const RequestConstPtr second = nextRequest();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->items, Items{"apple"});
+  EXPECT_EQ(second->step, 0u);
+}
+
+TEST_F(RealCameraTest, OneItemAfterTheOtherIsHandedOverAndTakenOffTheRequest) {
+  const PickGoalConstPtr mug = goalOf("COLLECT", "mug");
+  ASSERT_TRUE(mug);
+  EXPECT_EQ(mug->action, "COLLECT");
+  EXPECT_EQ(mug->item, "mug");
+  EXPECT_EQ(mug->item_probability, 0.75);
+  EXPECT_FALSE(nextRequest(0.4)) << "the robot is busy";
+  answer(true);
+  EXPECT_EQ(nextItems(), Items{"bowl"});
+  ASSERT_TRUE(goalOf("COLLECT", "bowl"));
+  answer(true);
+  EXPECT_FALSE(nextRequest(0.4)) << "nothing is left";
+  EXPECT_TRUE(isLogged("collected bowl; still requested: nothing"));
+}
+
+TEST_F(RealCameraTest, TheGoalSaysWhereTheOpticalAxisMeetsTheSurface) {
+  visualization_msgs::MarkerArrayConstPtr markers;
+  const auto subscriber = node_.subscribe<visualization_msgs::MarkerArray>(
+      kFoundMarkersTopic, 10, [&](const visualization_msgs::MarkerArrayConstPtr& m) { markers = m; });
+  const PickGoalConstPtr goal = goalOf("COLLECT", "mug");
+  ASSERT_TRUE(goal);
+  EXPECT_EQ(goal->pose.header.frame_id, "base_link");
+  const geometry_msgs::Pose& pose = goal->pose.pose;
+  EXPECT_NEAR(pose.position.x, 0.1 + std::sqrt(0.75), 1e-6);
+  EXPECT_NEAR(pose.position.y, 0.2, 1e-6);
+  EXPECT_NEAR(pose.position.z, 0.9, 1e-6);
+  EXPECT_NEAR(std::abs(pose.orientation.y), std::sin(M_PI / 12), 1e-6) << "x points 30 degrees downwards";
+  ASSERT_TRUE(found_);
+  EXPECT_EQ(found_->item, "mug");
+  EXPECT_EQ(found_->pose, goal->pose);
+  EXPECT_EQ(found_->header.stamp, goal->pose.header.stamp) << "of the image";
+  ASSERT_TRUE(spinUntil([&] { return markers != nullptr; }));
+  EXPECT_EQ(markers->markers[0].header.frame_id, "base_link");
+  EXPECT_EQ(markers->markers[0].pose, pose);
+  answer(true);
+}
+
+TEST_F(RealCameraTest, AFailureKeepsTheItemAndTooManyInARowGiveItUp) {
+  ASSERT_TRUE(goalOf("COLLECT", "mug"));
+  answer(false, "it slipped");
+  EXPECT_EQ(nextItems(), (Items{"mug", "bowl"}));
+  EXPECT_TRUE(isLogged("COLLECT of mug failed: it slipped"));
+  ASSERT_TRUE(goalOf("REMOVE", "mug"));
+  server_->setAborted(PickResult(), "out of reach");
+  EXPECT_EQ(nextItems(), Items{"bowl"});
+  EXPECT_TRUE(isLogged("gave up mug after 2 failures in a row (~max_failures); still requested: bowl"));
+}
+
+TEST_F(RealCameraTest, ARemovedObjectLeavesTheRequestAlone) {
+  const PickGoalConstPtr goal = goalOf("REMOVE", "mug");
+  ASSERT_TRUE(goal);
+  EXPECT_EQ(goal->action, "REMOVE");
+  answer(true);
+  EXPECT_EQ(nextItems(), (Items{"mug", "bowl"}));
+}
+
+TEST_F(RealCameraTest, APickThatTakesTooLongHasFailed) {
+  ASSERT_TRUE(goalOf("COLLECT", "mug"));
+  EXPECT_EQ(nextItems(), (Items{"mug", "bowl"}));
+  EXPECT_TRUE(isLogged("the pick server did not finish within ~pick_timeout"));
+  EXPECT_TRUE(spinUntil([&] { return !server_->isActive(); })) << "the goal is cancelled";
+}
+
+TEST_F(RealCameraTest, ANewRequestCancelsThePickOfTheOldOne) {
+  ASSERT_TRUE(goalOf("COLLECT", "mug"));
+  ASSERT_TRUE(request({"mug"}));
+  EXPECT_TRUE(spinUntil([&] { return !server_->isActive(); }));
+  EXPECT_EQ(nextItems(), Items{"mug"});
+}
+
+TEST_F(RealCameraTest, AnItemThatIsNotRequestedIsNotPicked) {
+  const RequestConstPtr asked = nextRequest();
+  ASSERT_TRUE(asked);
+  act("COLLECT", asked->header, "");
+  EXPECT_TRUE(isLogged("set ~name_items of policy_node"));
+  EXPECT_FALSE(goal_);
+  EXPECT_EQ(nextItems(), (Items{"mug", "bowl"}));
+}
+
+TEST_F(RealCameraTest, AnImageThatIsTakenWhileTheUnitMovesIsNotAskedAbout) {
+  const RequestConstPtr first = nextRequest();
+  ASSERT_TRUE(first);
   act("TILT_DOWN", first->header);
-  act("PAN_RIGHT", second->header);
-  EXPECT_TRUE(spinUntil([&] { return std::abs(*pan_ - limit + 2 * world::kStepRad) < 1e-9; }));
-  EXPECT_NEAR(*tilt_, tilt, 1e-9);
+  requests_.clear();
+  for (int i = 0; i < 50; ++i) {
+    tilt_ += 0.006;
+    publishAll();
+    spinFor(0.01);
+  }
+  EXPECT_TRUE(requests_.empty());
+  const ::ros::Time still = ::ros::Time::now();
+  const RequestConstPtr second = nextRequest();
+  ASSERT_TRUE(second);
+  EXPECT_GE(second->header.stamp, still);
+}
+
+TEST_F(RealCameraTest, WithoutATransformNothingIsAskedAndTheFramesAreNamed) {
+  // The image's frame is another one now: this is how a camera that is not in tf looks.
+  image_frame_ = "webcam";
+  EXPECT_FALSE(nextRequest(0.4));
+  EXPECT_TRUE(isLogged("there is no transform from ~target_frame 'base_link' to the camera's frame 'webcam'"));
+}
+
+TEST_F(RealCameraTest, WithoutAPickServerNothingIsAskedAndItIsNamed) {
+  server_.reset();
+  spinFor(0.5);
+  EXPECT_FALSE(nextRequest(0.4));
+  EXPECT_TRUE(isLogged("there is no action server /pick"));
+  startServer();
+  EXPECT_TRUE(nextRequest());
+}
+
+class AloneTest : public RealCameraTest {
+ protected:
+  AloneTest() : RealCameraTest("alone") {}
+};
+
+TEST_F(AloneTest, FoundItemsAreAnnouncedAndTakenOff) {
+  const RequestConstPtr asked = nextRequest();
+  ASSERT_TRUE(asked);
+  act("COLLECT", asked->header, "bowl");
+  ASSERT_TRUE(publishUntil([&] { return found_ != nullptr; }));
+  EXPECT_EQ(found_->action, "COLLECT");
+  EXPECT_EQ(found_->item, "bowl");
+  EXPECT_EQ(found_->header.stamp, asked->header.stamp);
+  EXPECT_EQ(found_->pose.header.frame_id, "") << "no position is wanted";
+  EXPECT_EQ(nextItems(), Items{"mug"});
+  EXPECT_FALSE(goal_);
+}
+
+TEST_F(AloneTest, NobodyRemovesWhatIsInTheWay) {
+  const RequestConstPtr asked = nextRequest();
+  ASSERT_TRUE(asked);
+  act("REMOVE", asked->header, "bowl");
+  EXPECT_TRUE(isLogged("REMOVE of bowl failed: with pick:=none nobody removes what is in the way"));
+  EXPECT_EQ(nextItems(), Items{"mug"}) << "one failure is enough here";
+}
+
+class DepthTest : public RealCameraTest {
+ protected:
+  DepthTest() : RealCameraTest("depth") {
+    depth_publisher_ = node_.advertise<sensor_msgs::Image>(kDepthImageTopic, 10);
+  }
+  ::ros::Publisher depth_publisher_;
+};
+
+TEST_F(DepthTest, TheDepthAtTheCentreSaysWhereAndWithoutItThePickFails) {
+  RequestConstPtr asked = nextRequest();
+  ASSERT_TRUE(asked);
+  act("COLLECT", asked->header, "mug");
+  EXPECT_TRUE(
+      isLogged("COLLECT of mug failed: its position is not known: no depth image of that time on "
+               "/depth/camera/depth/image_raw"));
+  asked = nextRequest();
+  ASSERT_TRUE(asked);
+  sensor_msgs::Image depth;
+  depth.header = asked->header;
+  depth.width = depth.height = 5;
+  depth.encoding = "32FC1";
+  depth.step = 20;
+  depth.data.resize(100);
+  const float metres = 0.5f;
+  for (int i = 0; i < 25; ++i) std::memcpy(&depth.data[4 * i], &metres, sizeof(metres));
+  depth_publisher_.publish(depth);
+  spinFor(0.1);
+  act("COLLECT", asked->header, "mug");
+  ASSERT_TRUE(publishUntil([&] { return found_ != nullptr; }));
+  EXPECT_NEAR(found_->pose.pose.position.z, 1.4 - 0.25, 1e-6);
+}
+
+TEST_F(DepthTest, TfTellsWhetherTheCameraStandsStill) {
+  ASSERT_TRUE(nextRequest());
+  spinFor(2);  // longer than answer_timeout, without images
+  requests_.clear();
+  for (int i = 0; i < 50; ++i) {
+    tilt_ += 0.006;
+    publishAll();
+    spinFor(0.01);
+  }
+  EXPECT_LE(requests_.size(), 1u) << "the first image still belongs to the rest before";
+  EXPECT_TRUE(nextRequest());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "early_fusion/learning/rollout.h"
 #include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/shared/conversions.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -32,6 +32,13 @@ class RolloutRecorderTest : public testing::Test {
     plan_.weights = "w";
     plan_.mode = "sample";
     recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
+  }
+
+  /// What a simulator and a policy say of an episode that the expert drives, while the policy answers IDLE.
+  std::vector<Messages> playDriven(std::uint64_t number) {
+    std::vector<Messages> steps = play(number);
+    for (Messages& messages : steps) messages.action.name = "IDLE";
+    return steps;
   }
 
   /// What a simulator and a policy say of an episode that the expert plays; TILT_UP first where `blunder` is set.
@@ -87,10 +94,10 @@ class RolloutRecorderTest : public testing::Test {
     return "";
   }
 
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld(files_.world());
   sim::Task task_ = sim::loadTask(files_.task());
-  render::Rasterizer rasterizer_{*world_, SmallSession::kImageSize};
+  render::Rasterizer rasterizer_{*world_, learning::SmallSession::kImageSize};
   RolloutPlan plan_;
   std::unique_ptr<RolloutRecorder> recorder_;
   std::uint32_t stamp_ = 1;
@@ -216,6 +223,48 @@ TEST_F(RolloutRecorderTest, ANewBeginningReplacesAnEpisodeThatWasCutOff) {
   add(cut[1]);
   addAll(whole);
   EXPECT_EQ(recorder_->next()->steps.size(), whole.size());
+}
+
+TEST_F(RolloutRecorderTest, WhereTheExpertDrivesItsActionIsRecordedAndNotThePolicys) {
+  plan_.goal.expert_share = 1;
+  recorder_ = std::make_unique<RolloutRecorder>(*world_, plan_);
+  addAll(playDriven(10));
+  const std::optional<learning::Trajectory> recorded = recorder_->next();
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(recorded->agreement(), 1);
+  learning::RolloutRunner(*world_, task_, kSeed)
+      .run(10, 1, *learning::makeExpertAgent(), true, [&](const auto& wanted) {
+        EXPECT_EQ(recorded->score.f1, wanted.score.f1);
+        for (std::size_t s = 0; s < wanted.steps.size(); ++s) {
+          EXPECT_EQ(recorded->steps[s].action, wanted.steps[s].action);
+          EXPECT_EQ(*recorded->steps[s].frame, *wanted.steps[s].frame);
+        }
+      });
+}
+
+TEST_F(RolloutRecorderTest, RefusesASimulatorThatDrivesOtherSteps) {
+  const std::vector<Messages> driven = playDriven(10);
+  add(driven[0]);
+  EXPECT_NE(complaint(driven[1]).find("does not follow from the previous step"), std::string::npos);
+}
+
+TEST_F(RolloutRecorderTest, RefusesAPlanThatNobodyCanDrive) {
+  const auto refusal = [&]() -> std::string {
+    try {
+      RolloutRecorder(*world_, plan_);
+    } catch (const core::Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  plan_.goal.expert_share = 1.5;
+  EXPECT_NE(refusal().find("expert_share is 1.5"), std::string::npos) << refusal();
+  plan_.goal.expert_share = 0.5;
+  plan_.goal.expert_share_per = "day";
+  EXPECT_NE(refusal().find("'day'"), std::string::npos) << refusal();
+  plan_.goal.expert_share_per = "step";
+  plan_.goal.training_expert = "wise";
+  EXPECT_NE(refusal().find("'wise'"), std::string::npos) << refusal();
 }
 
 TEST_F(RolloutRecorderTest, RefusesAnImageOfAnotherSize) {

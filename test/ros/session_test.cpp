@@ -15,7 +15,7 @@
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
 #include "early_fusion/model/policy_file.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -49,7 +49,7 @@ bool waitFor(const std::function<bool()>& condition, double timeout_sec = 30) {
 class SessionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    files_ = new SmallSession();
+    files_ = new learning::SmallSession();
     trainHere(given("reference"));
   }
   static void TearDownTestSuite() { delete files_; }
@@ -59,7 +59,7 @@ class SessionTest : public testing::Test {
             {"world", files_->world()},
             {"preset", files_->preset()},
             {"output", files_->path(output)},
-            {"evaluation_episodes", std::to_string(SmallSession::kEvaluationEpisodes)}};
+            {"evaluation_episodes", std::to_string(learning::SmallSession::kEvaluationEpisodes)}};
   }
 
   static void trainHere(const std::vector<std::pair<std::string, std::string>>& given_options) {
@@ -112,13 +112,13 @@ class SessionTest : public testing::Test {
     return processesWith({node + "_node", "__log:=" + files_->path("ros_home/log")});
   }
 
-  static SmallSession* files_;
+  static learning::SmallSession* files_;
   ChildProcess::Environment environment_;
   std::optional<ChildProcess> master_;
   int launches_ = 0;
 };
 
-SmallSession* SessionTest::files_ = nullptr;
+learning::SmallSession* SessionTest::files_ = nullptr;
 
 TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
   const auto session = launchTraining("run");
@@ -129,7 +129,7 @@ TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
   EXPECT_EQ(one["per_episode"], other["per_episode"]);
   EXPECT_EQ(one["weights_id"], other["weights_id"]);
   // A line for each round, with what a person wants to know.
-  const std::string total = std::to_string(SmallSession::kTrajectories);
+  const std::string total = std::to_string(learning::SmallSession::kTrajectories);
   EXPECT_NE(session->output().find("2/" + total), std::string::npos) << session->output();
   EXPECT_NE(session->output().find(total + "/" + total + " (100%)"), std::string::npos) << session->output();
 }
@@ -166,6 +166,22 @@ TEST_F(SessionTest, AnyNumberOfWorkersTrainsTheSameWeights) {
   }
 }
 
+TEST_F(SessionTest, ScoresOnTheWayAsTheCommandLineDoes) {
+  auto scored = given("scored_here");
+  scored.emplace_back("score_every", "3");
+  trainHere(scored);
+  const auto session = launchTraining("scored", {"options:={score_every: 3}"});
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("scored/result.json")) << session->output();
+  EXPECT_TRUE(weights("scored") == weights("reference"));
+  const auto scores = [](const std::string& output) {
+    const std::string file = files_->path(output + "/scores.csv");
+    return std::regex_replace(core::readFile(file), std::regex(R"((\n\d+,)[^,]*)"), "$1");  // without the minutes
+  };
+  EXPECT_EQ(scores("scored"), scores("scored_here"));
+  EXPECT_EQ(result("scored")["per_episode"], result("reference")["per_episode"]);
+}
+
 TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
   const std::string kind = "softmax_attention_map";
   const auto left = launchTraining("left", {"__ns:=left", "private_tf:=true"});
@@ -180,6 +196,26 @@ TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
   trainHere(attending);
   EXPECT_TRUE(weights("right") == weights("attending"));
   EXPECT_FALSE(weights("right") == weights("reference"));
+}
+
+/// The expert drives in the simulator, which knows the state; each round has a new policy and draws frames again.
+TEST_F(SessionTest, ADaggerSessionWithAnExpertThatDrivesTrainsTheWeightsOfTheCommandLine) {
+  const auto session = launchTraining(
+      "dagger", {"options:={expert_share: 0.8, final_expert_share: 0.2, training_expert: searching, window: 0, "
+                 "window_memory: 0, restart_policy: true}"});
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("dagger/result.json")) << session->output();
+  auto here = given("dagger_here");
+  for (const auto& [name, value] : core::GivenOptions{{"expert_share", "0.8"},
+                                                      {"final_expert_share", "0.2"},
+                                                      {"training_expert", "searching"},
+                                                      {"window", "0"},
+                                                      {"restart_policy", "true"}}) {
+    here.emplace_back(name, value);
+  }
+  trainHere(here);
+  EXPECT_TRUE(weights("dagger") == weights("dagger_here"));
+  EXPECT_FALSE(weights("dagger") == weights("reference"));
 }
 
 TEST_F(SessionTest, ASessionThatCannotRunEndsWithTheReason) {
@@ -201,9 +237,9 @@ TEST_F(SessionTest, ARunFolderIsNotOverwrittenUnlessResumed) {
 
 TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
   const std::string path = files_->path("reference/weights.safetensors");
-  const auto launched = launch(
-      "evaluate.launch", {"weights:=" + path, "task:=" + files_->task(), "episodes:=5", "world:=" + files_->world(),
-                          "precision:=f32", "result:=" + files_->path("scores.json")});
+  const auto launched = launch("evaluate.launch", {"weights:=" + path, "task:=" + files_->task(), "episodes:=5",
+                                                   "world:=" + files_->world(), "precision:=f32", "pairs:=held_out",
+                                                   "held_out_pairs:=0.5", "result:=" + files_->path("scores.json")});
   ASSERT_TRUE(launched->ends(kSessionSec)) << launched->output();
   ASSERT_TRUE(exists("scores.json")) << launched->output();
   EXPECT_NE(launched->output().find("agreement"), std::string::npos);
@@ -211,11 +247,13 @@ TEST_F(SessionTest, EvaluatesAsTheCommandLineDoes) {
   const auto world = world::loadWorld(files_->world());
   const auto policy = model::loadPolicy(nn::WeightsFile::read(path), path, "f32");
   const auto agent = learning::makePolicyAgent(*policy, model::ActionChoice::kArgmax, learning::kHeldOutSeed);
-  learning::RolloutRunner runner(*world, sim::loadTask(files_->task()), learning::kHeldOutSeed);
+  const sim::Task task = sim::withPairs("held_out", {0.5, 1}, sim::loadTask(files_->task()));
+  learning::RolloutRunner runner(*world, task, learning::kHeldOutSeed);
   const auto expected = nlohmann::json::parse(learning::evaluate(runner, *agent, 5, path).toJson());
   const auto scores = nlohmann::json::parse(core::readFile(files_->path("scores.json")));
   EXPECT_EQ(scores["per_episode"], expected["per_episode"]);
   EXPECT_EQ(scores["f1"], expected["f1"]);
+  EXPECT_EQ(scores["pairs"], "held_out");
 }
 
 TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {

@@ -15,7 +15,7 @@
 #include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
-#include "small_session.h"
+#include "learning/small_session.h"
 #include "spin_until.h"
 
 namespace early_fusion::nodes {
@@ -90,7 +90,7 @@ class SimulatorNodeTest : public testing::Test {
   std::map<::ros::Time, sensor_msgs::JointStateConstPtr> joints_;
   std::vector<EpisodeResultConstPtr> results_;
   std::string message_;
-  const SmallSession files_;
+  const learning::SmallSession files_;
   const std::shared_ptr<const world::World> world_ = world::loadWorld("");
 };
 
@@ -220,7 +220,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   goal.episodes = 2;
   client.sendGoal(goal);
   for (std::uint64_t episode : {20, 21}) {
-    for (int step = 0; step < SmallSession::kSteps; ++step) {
+    for (int step = 0; step < learning::SmallSession::kSteps; ++step) {
       ASSERT_TRUE(awaitStep(episode, step)) << episode << " " << step;
       EXPECT_FALSE(reset(1, 1)) << "a goal is being played";
       const sim::Task task = sim::withUpTo(6, sim::loadTask(files_.task()));
@@ -234,8 +234,45 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   EXPECT_EQ(results_[0]->episode, 20u);
   EXPECT_EQ(results_[1]->episode, 21u);
   EXPECT_EQ(results_[1]->task, "short");
-  EXPECT_EQ(results_[1]->steps, static_cast<std::uint32_t>(SmallSession::kSteps));
+  EXPECT_EQ(results_[1]->steps, static_cast<std::uint32_t>(learning::SmallSession::kSteps));
   EXPECT_EQ(results_[1]->collected, 0u);
+}
+
+TEST_F(SimulatorNodeTest, TheExpertDrivesTheStepsThatAGoalGivesIt) {
+  actionlib::SimpleActionClient<RunEpisodesAction> client(node_, kRunEpisodesAction, false);
+  ASSERT_TRUE(spinUntil([&] { return client.isServerConnected(); }));
+  RunEpisodesGoal goal;
+  goal.task = files_.task();
+  goal.seed = 9;
+  goal.first_episode = 30;
+  goal.episodes = 2;
+  goal.expert_share = 0.5;
+  goal.training_expert = "searching";
+  client.sendGoal(goal);
+  const learning::ExpertDrive drive = expertDrive(goal);
+  int driven = 0;
+  for (std::uint64_t number : {30, 31}) {
+    sim::Episode episode(*world_, {sim::loadTask(files_.task()), 9, number});
+    std::vector<int> pans;
+    for (int step = 0; step < SmallSession::kSteps; ++step) {
+      ASSERT_TRUE(awaitStep(number, step)) << number << " " << step;
+      const sim::EpisodeState& state = episode.state();
+      EXPECT_EQ(scenes_.back()->pan, state.orientation.pan);
+      EXPECT_EQ(scenes_.back()->tilt, state.orientation.tilt);
+      pans.push_back(state.orientation.pan);
+      action_publisher_.publish(answer("TILT_UP"));
+      const bool expert_drives = drive.drives(9, number, step);
+      driven += expert_drives;
+      episode.step(expert_drives
+                       ? expert::searchingLabel(episode.cone(), episode.setup().instances, state.present,
+                                                state.orientation, expert::panDirectionOver(pans), state.request)
+                             .action
+                       : core::Action::kTiltUp);
+    }
+  }
+  ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
+  EXPECT_GT(driven, 0);
+  EXPECT_LT(driven, 2 * SmallSession::kSteps);
 }
 
 TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
@@ -260,6 +297,12 @@ TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
   EXPECT_NE(client.getState().getText().find("max_instances is 4000000000"), std::string::npos);
+  goal.max_instances = 0;
+  goal.expert_share = -1;
+  client.sendGoal(goal);
+  ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
+  EXPECT_EQ(client.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  EXPECT_NE(client.getState().getText().find("expert_share is -1"), std::string::npos);
 }
 
 TEST_F(SimulatorNodeTest, MarkersShowTheObjectsToWhoLooks) {

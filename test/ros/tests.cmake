@@ -3,7 +3,8 @@ find_package(rostest QUIET)
 add_library(${PROJECT_NAME}_child_process STATIC ros/child_process.cpp)
 target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
-foreach(name acting_policy camera_image conversions markers option_tables rollout_recorder)
+foreach(name acting_policy camera_crop camera_image conversions joint_stepper markers option_tables pan_tilt_stepper
+    request_list request_pairing rollout_recorder sight_line standstill topic_watch virtual_camera virtual_joint)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()
@@ -16,9 +17,10 @@ add_dependencies(ros_launch_files_test ${PROJECT_NAME}_cli)
 early_fusion_add_test(ros session_test ${PROJECT_NAME}_child_process nlohmann_json::nlohmann_json)
 
 # A node with a test in the place of its partners: ros/<name>.test and ros/<name>_rostest.cpp.
-foreach(name node_parameters policy_node real_camera simulator_node)
+foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_node virtual_path virtual_robot)
   if(rostest_FOUND)
     add_rostest_gtest(${name}_rostest ros/${name}.test ros/${name}_rostest.cpp)
+    target_include_directories(${name}_rostest PRIVATE ${PROJECT_SOURCE_DIR}/test)
     target_include_directories(${name}_rostest SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
     target_link_libraries(${name}_rostest ${PROJECT_NAME}_ros ${PROJECT_NAME}_child_process gtest)
   else()

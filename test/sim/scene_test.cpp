@@ -176,6 +176,47 @@ TEST(Scene, RequestsASubsetOfTheInstances) {
   EXPECT_TRUE(twice);
 }
 
+TEST(Scene, RequestsTrainedOrHeldOutPairsOnly) {
+  const PairSplit split{0.5, 1};
+  const HeldOutPairs held_out(world().objects.size(), split);
+  for (const char* choice : {"trained", "held_out"}) {
+    const Task task = withPairs(choice, split, makeTask(5, 2));
+    std::set<core::Request> requests;
+    for (std::uint64_t episode = 0; episode < 200; ++episode) {
+      const core::Request request = sampleEpisode(world(), {task, 3, episode}).request;
+      ASSERT_EQ(request.size(), 2u);
+      EXPECT_EQ(held_out.areIn(request), task.pairs == PairChoice::kHeldOut);
+      requests.insert(request);
+    }
+    EXPECT_EQ(requests.size(), 5u) << "half of 4 items' 6 + 4 pairs";
+  }
+}
+
+TEST(Scene, AnEpisodeWhoseRequestIsAllowedAnywayIsTheSame) {
+  const PairSplit split{0.5, 1};
+  const HeldOutPairs held_out(world().objects.size(), split);
+  int same = 0;
+  for (std::uint64_t episode = 0; episode < 20; ++episode) {
+    const EpisodeSetup any = sampleEpisode(world(), {makeTask(5, 2), 3, episode});
+    for (const PairChoice choice : {PairChoice::kAll, PairChoice::kTrained}) {
+      if (!held_out.allow(choice, any.request)) continue;
+      const Task task = withPairs(pairChoiceName(choice), split, makeTask(5, 2));
+      const EpisodeSetup chosen = sampleEpisode(world(), {task, 3, episode});
+      EXPECT_TRUE(chosen.instances == any.instances && chosen.request == any.request &&
+                  chosen.orientation == any.orientation);
+      ++same;
+    }
+  }
+  EXPECT_GT(same, 25);
+}
+
+TEST(Scene, SaysThatNoRequestIsAllowed) {
+  const Task task = withPairs("trained", {0.9, 1}, makeTask(4, 3));  // of 10 pairs, one is left
+  const std::string error = world::errorOf([&] { sampleEpisode(world(), {task, 1, 1}); });
+  EXPECT_NE(error.find("no request of 3 instances is one of the 'trained' pairs in 50 scenes"), std::string::npos)
+      << error;
+}
+
 TEST(Scene, IsTheSameForTheSameSeedAndEpisodeOnly) {
   const auto first_x = [](std::uint64_t seed, std::uint64_t episode) {
     return sampleEpisode(world(), {makeTask(4, 1), seed, episode}).instances[0].x;

@@ -48,7 +48,8 @@ TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
   const std::string error = world::errorOf([] { loadTask("harder"); });
-  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple) nor")) << error;
+  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple, three_of_eight) nor"))
+      << error;
   EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is neither one of the known tasks"));
 }
 
@@ -74,6 +75,21 @@ TEST(Task, WithUpToSoManyInstancesHasNoFewerThanBefore) {
   EXPECT_EQ(withUpTo(12, loadTask("simple")).maxInstances(), 12);
   EXPECT_EQ(withUpTo(12, withUpTo(20, loadTask("simple"))).maxInstances(), 20);
   EXPECT_EQ(withUpTo(5, loadTask("hard")).maxInstances(), 12);
+}
+
+TEST(Task, WithPairsNamesWhatDoesNotFit) {
+  const Task medium = loadTask("medium");
+  EXPECT_EQ(withPairs("held_out", {0.5, 7}, medium).pairs, PairChoice::kHeldOut);
+  EXPECT_EQ(withPairs("held_out", {0.5, 7}, medium).pair_split.held_out_pairs_seed, 7u);
+  EXPECT_EQ(withPairs("all", {0, 1}, loadTask("simple")).pairs, PairChoice::kAll);
+  const auto error = [](const std::string& choice, double share, const Task& task) {
+    return world::errorOf([&] { withPairs(choice, {share, 1}, task); });
+  };
+  EXPECT_TRUE(mentions(error("held_out", 0, medium), "'held_out' needs held-out pairs"));
+  EXPECT_TRUE(mentions(error("trained", 0, medium), "'trained' needs held-out pairs"));
+  EXPECT_TRUE(mentions(error("trained", 0.95, medium), "task 'medium': held_out_pairs: '0.95' is out of range"));
+  EXPECT_TRUE(mentions(error("trained", 0.5, loadTask("simple")), "task 'simple' requests one instance"));
+  EXPECT_TRUE(mentions(error("some", 0.5, medium), "'some'"));
 }
 
 }  // namespace

@@ -105,9 +105,30 @@ TEST(CameraRig, SaysWhatIsWrongWithAJoint) {
   EXPECT_NE(errorOfRig("<limit " + kPanLimits + R"( effort="1" velocity="1"/>)", "").find("limits"), std::string::npos);
   EXPECT_NE(errorOfRig(kPanLimits, R"(lower="0.036" upper="0.069")").find("no multiple of 2 degrees"),
             std::string::npos);
-  EXPECT_NE(errorOfRig(kPanLimits, R"(lower="0.7" upper="-0.7")").find("[0.7, -0.7] rad"), std::string::npos);
+  EXPECT_NE(errorOfRig(kPanLimits, R"(lower="0.7" upper="-0.7")").find("swapped limits [0.7, -0.7] rad"),
+            std::string::npos);
   EXPECT_NE(errorOfRig(kPanLimits, R"(lower="-100" upper="100")").find("within [-6.28318, 6.28318]"),
             std::string::npos);
+}
+
+TEST(CameraRig, RefusesLoopsOfLinks) {
+  const std::string end = "</robot>";
+  const auto joint = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name='" + name + "' type='fixed'><parent link='" + parent + "'/><child link='" + child +
+           "'/></joint>";
+  };
+  const std::string cycle = "<link name='b'/><link name='c'/>" + joint("bc", "b", "c") + joint("cb", "c", "b") + end;
+  EXPECT_NE(errorOfRig(end, cycle).find("link 'b' is its own ancestor"), std::string::npos) << errorOfRig(end, cycle);
+  const std::string self = "<link name='b'/>" + joint("loop", "b", "b") + end;
+  EXPECT_NE(errorOfRig(end, self).find("link 'b' is its own ancestor"), std::string::npos) << errorOfRig(end, self);
+}
+
+TEST(CameraRig, RefusesTextsThatAreNoUrdfYet) {
+  EXPECT_NE(errorOfRig("<link name=\"world\"/>", "<xacro:property name='a' value='1'/>").find("expand it first: xacro"),
+            std::string::npos);
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  EXPECT_NE(errorOf([&] { load(deep); }).find("nested more than 64 deep"), std::string::npos);
 }
 
 TEST(CameraRig, RefusesMovesThatWouldTurnTheOtherWay) {
@@ -125,7 +146,7 @@ TEST(CameraRig, RefusesAJointThatMovesInBetween) {
             std::string::npos);
   const TestFolder folder;
   const std::string file = folder.write("rig.urdf", kRigUrdf);
-  EXPECT_NE(errorOf([&] { CameraRig::load(file, "tilt_joint", "pan_joint", "eye"); }).find("must be fixed"),
+  EXPECT_NE(errorOf([&] { CameraRig::load(file, "tilt_joint", "pan_joint", "eye"); }).find("hangs from the tilt joint"),
             std::string::npos);
 }
 

@@ -1,6 +1,7 @@
 early_fusion_add_test(world camera_rig_test)
 early_fusion_add_test(world convex_hull_test)
 early_fusion_add_test(world object_set_test)
+early_fusion_add_test(world pan_tilt_unit_test)
 early_fusion_add_test(world placed_hull_test)
 early_fusion_add_test(world shipped_meshes_test ${PROJECT_NAME}_make_meshes)
 early_fusion_add_test(world textured_mesh_test ${OpenCV_LIBS})

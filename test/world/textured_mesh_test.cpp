@@ -1,10 +1,12 @@
 #include "early_fusion/world/textured_mesh.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "early_fusion/core/random.h"
 #include "world/handmade_world.h"
 #include "world/test_world.h"
 #include "world/ycb_scans.h"
@@ -182,6 +184,79 @@ TEST_F(TexturedMeshTest, ErrorsNameThePathAndTheFault) {
 
   const std::string infinite = write("infinite.obj", "v 0 0 0\nv 1 0 0\nv 1 1e39 0\nf 1 2 3\n");
   EXPECT_NE(errorOf(infinite).find(infinite + ": vertex "), std::string::npos) << errorOf(infinite);
+}
+
+/// A pyramid of four triangles and one more face.
+std::string pyramidPly(const std::string& face, const std::string& top = "0 0 1") {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 5\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" +
+         top + "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n" + face + "\n";
+}
+
+TEST_F(TexturedMeshTest, RefusesDamagedFiles) {
+  EXPECT_EQ(errorOf(write("good.ply", pyramidPly("3 0 2 1"))), "");
+  const auto refusal = [&](const std::string& name, const std::string& text) { return errorOf(write(name, text)); };
+  EXPECT_NE(refusal("header.ply", "ply\nformat ascii 1.0\n").find("its header has no end_header"), std::string::npos);
+  EXPECT_NE(refusal("index.ply", pyramidPly("3 0 1 900000")).find("out of range"), std::string::npos)
+      << refusal("index.ply", pyramidPly("3 0 1 900000"));
+  EXPECT_NE(refusal("nan.ply", pyramidPly("3 0 2 1", "nan nan nan")).find("vertex 3 of mesh '' is not finite"),
+            std::string::npos);
+  EXPECT_NE(refusal("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").find("have no area"), std::string::npos)
+      << refusal("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  EXPECT_NE(refusal("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").find("only points or lines"), std::string::npos)
+      << refusal("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+  EXPECT_NE(refusal("empty.obj", "").find("empty.obj: cannot be read as a mesh"), std::string::npos);
+}
+
+TEST_F(TexturedMeshTest, ReadsOnlyRegularFiles) {
+  const std::string fifo = folder_.path() + "/fifo.obj";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_EQ(errorOf(fifo), fifo + ": cannot be read as a mesh: it is not a regular file");
+  ASSERT_EQ(::mkfifo((folder_.path() + "/fifo.mtl").c_str(), 0600), 0);
+  const std::string square = write("named.obj", replaced(kSquare, "square.mtl", "fifo.mtl"));
+  EXPECT_EQ(errorOf(square), "");  // as with a missing material file
+}
+
+TEST_F(TexturedMeshTest, RefusesATextureThatClaimsTooManyPixels) {
+  const std::string square = write("square.obj", kSquare);
+  write("square.mtl", "newmtl cloth\nmap_Kd huge.png\n");
+  const std::string size = {0, 0, '\xea', 0x60};  // 60,000
+  write("huge.png",
+        "\x89PNG\r\n\x1a\n" + std::string("\0\0\0\rIHDR", 8) + size + size + std::string("\x08\2\0\0\0", 5));
+  EXPECT_NE(errorOf(square).find("huge.png claims to have 3600000000 pixels"), std::string::npos) << errorOf(square);
+}
+
+TEST_F(TexturedMeshTest, DamagedFilesOfEveryFormatCostAnErrorAtMost) {
+  const std::string collada = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1" name="meter"/><up_axis>Z_UP</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert><diffuse><color>1 0 0 1</color></diffuse>
+</lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION"
+source="#p"/></vertices><triangles material="s" count="1"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="vs"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#vs"/></scene></COLLADA>
+)";
+  core::Random random(1);
+  for (const auto& [name, good] :
+       {std::pair<std::string, std::string>("m.ply", pyramidPly("3 0 2 1")), {"m.obj", kSquare}, {"m.dae", collada}}) {
+    EXPECT_EQ(errorOf(write(name, good)).find("crashes"), std::string::npos);
+    int refused = 0;
+    for (int i = 0; i < 100; ++i) {
+      std::string text = good;
+      const int size = static_cast<int>(text.size());
+      if (i % 3 == 0) text.resize(random.below(size));
+      if (i % 3 == 1) text.erase(random.below(size), 1 + random.below(60));
+      if (i % 3 == 2) text[random.below(size)] = static_cast<char>(random.below(256));
+      refused += !errorOf(write(name, text)).empty();
+    }
+    EXPECT_GT(refused, 0) << name;
+  }
 }
 
 TEST_F(TexturedMeshTest, RealScansLoad) {

@@ -25,6 +25,9 @@ struct Option {
 
   /// Whether the value is true or false, so that the command line takes a flag without a value.
   bool isSwitch() const { return range == "true | false"; }
+
+  /// Its flag on the command line: "--learning-rate" of learning_rate.
+  std::string flag() const;
 };
 
 /// What a user has set, as (name, text), in the order in which it takes effect.

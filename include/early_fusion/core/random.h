@@ -39,14 +39,18 @@ class Random {
 
 /// The first key of a stream: its purpose. The braces show the keys that follow.
 enum RandomStream : std::uint64_t {
-  kEpisodeStream = 1,       ///< {episode}: scene, request and first camera orientation
-  kSamplingStream = 2,      ///< {episode, step}: the action drawn from the policy's probabilities
-  kInitialisation = 3,      ///< {}: the network's initial weights
-  kShuffleStream = 4,       ///< {round, epoch}: the order of training samples
-  kDropoutStream = 5,       ///< {round, first frame of the batch}: dropout masks
-  kRelabelStream = 6,       ///< {episode, step}: the further labelled requests of a frame
-  kRandomPolicyStream = 7,  ///< {episode, step}: actions of the random baseline
-  kPersistenceStream = 8    ///< {episode, step}: whether persistent exploration draws a new random number
+  kEpisodeStream = 1,        ///< {episode}: scene, request and first camera orientation
+  kSamplingStream = 2,       ///< {episode, step}: the action drawn from the policy's probabilities
+  kInitialisation = 3,       ///< {}: the network's initial weights
+  kShuffleStream = 4,        ///< {round, epoch}: the order of training samples
+  kDropoutStream = 5,        ///< {round, first frame of the batch}: dropout masks
+  kRelabelStream = 6,        ///< {episode, step}: the further labelled requests of a frame
+  kRandomPolicyStream = 7,   ///< {episode, step}: actions of the random baseline
+  kPersistenceStream = 8,    ///< {episode, step}: whether persistent exploration draws a new random number
+  kDriveStream = 9,          ///< {episode} or {episode, step}: whether the training expert drives
+  kRestartStream = 10,       ///< {round}: the seed of the initial weights of a policy that restarts
+  kHeldOutPairsStream = 11,  ///< {}: which pairs of items are held out from training
+  kFirstRequestStream = 12   ///< {episode}: the first request of an episode that measures information retention
 };
 
 }  // namespace early_fusion::core

@@ -9,6 +9,7 @@
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/expert/searching_expert.h"
+#include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/goal_policy.h"
@@ -38,6 +39,13 @@ class Agent {
   virtual bool needsFrames() const { return false; }
 };
 
+/// Computes the probabilities of the actions in several situations, (situations, 7), rows sum to 1.
+using Decide = std::function<void(const std::vector<Situation>& situations, model::Probabilities& probabilities)>;
+
+/// Chooses actions from probabilities. A repeat has the probabilities of the previous step. @param seed decides drawn
+/// actions.
+std::unique_ptr<Agent> makeDecidingAgent(Decide decide, model::ActionChoice choice, std::uint64_t seed);
+
 /// A trained policy. @param seed decides drawn actions. `policy` must outlive the agent.
 std::unique_ptr<Agent> makePolicyAgent(model::GoalPolicy& policy, model::ActionChoice choice, std::uint64_t seed);
 
@@ -46,6 +54,11 @@ std::unique_ptr<Agent> makeExpertAgent();
 
 /// The searching expert, which knows only what the camera shows.
 std::unique_ptr<Agent> makeSearchingAgent();
+
+/// The training expert at the steps that it drives, and `policy` at the others. `policy` is not asked at the expert's
+/// steps. @param seed of the episodes.
+std::unique_ptr<Agent> makeSharedAgent(std::unique_ptr<Agent> policy, TrainingExpert training_expert,
+                                       const ExpertDrive& drive, std::uint64_t seed);
 
 /// Uniformly random actions: a baseline.
 std::unique_ptr<Agent> makeRandomAgent(std::uint64_t seed);

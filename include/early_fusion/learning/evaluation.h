@@ -24,12 +24,13 @@ struct Evaluation {
   Evaluation() = default;
   /// An evaluation without episodes. @param policy_name a weights file, an id of weights, expert, searching, random or
   /// idle.
-  Evaluation(std::string policy_name, std::string task_name, std::uint64_t episodes_seed);
+  Evaluation(std::string policy_name, const sim::Task& episodes_task, std::uint64_t episodes_seed);
 
   void add(const Trajectory& trajectory);
 
   std::string policy;
   std::string task;
+  std::string pairs = "all";  ///< the requests of the episodes: one of sim::pairChoiceNames()
   std::uint64_t seed = 0;
   std::vector<EpisodeOutcome> outcomes;  ///< in the order in which they were added
 
@@ -38,7 +39,7 @@ struct Evaluation {
   double recall() const;
   double agreement() const;
 
-  /// {"policy", "task", "seed", "episodes", "f1", "precision", "recall", "agreement", "per_episode": [...]}.
+  /// {"policy", "task", "pairs", "seed", "episodes", "f1", "precision", "recall", "agreement", "per_episode": [...]}.
   std::string toJson() const;
 
   /// "F1 0.913  precision 0.940  recall 0.902  agreement 0.881  (500 episodes)".

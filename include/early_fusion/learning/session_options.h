@@ -15,9 +15,11 @@ struct SessionOptions {
   std::string preset = "fast";
   std::string world;  ///< a WorldOptions file; empty: config/world.yaml of the package
   std::uint64_t seed = 1;
+  std::string from;     ///< a weights file to start from; empty: initial weights drawn from the seed
   std::string output;   ///< run folder for the checkpoint, the weights, the learning curve and the result
   bool resume = false;  ///< continue from the run folder's checkpoint if there is one
   int evaluation_episodes = 500;
+  int score_every = 0;  ///< trajectories between two scores on the way; 0: none
   model::PolicyOptions policy;
   TrainingOptions training;
 

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "early_fusion/learning/training_options.h"
+#include "early_fusion/learning/training_samples.h"
+#include "early_fusion/learning/training_window.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/learning/window_checkpoint.h"
 #include "early_fusion/model/trainable_policy.h"
@@ -21,19 +22,25 @@ struct RoundStatistics {
   std::uint64_t round = 0;         ///< from 1
   std::uint64_t trajectories = 0;  ///< seen so far
   double loss = 0;                 ///< mean over the round's training steps
-  double learning_rate = 0;
-  double f1 = 0;         ///< mean over the round's rollouts
-  double agreement = 0;  ///< mean over the round's rollouts
+  double learning_rate = 0;        ///< of the round's first training step
+  double f1 = 0;                   ///< mean over the round's rollouts
+  double agreement = 0;            ///< mean over the round's rollouts
 };
 
 /// The learner of the imitation loop: collects labelled trajectories and trains a policy on the most recent ones
 /// (Walsman et al. 2019, sec. IV-C, after Ross et al. 2011).
 ///
-/// It does not know where trajectories come from. The same options, seed and trajectories give the same weights.
+/// It does not know where trajectories come from. The same options, seed and trajectories give the same weights,
+/// whatever options.window_memory is.
 class Trainer {
  public:
+  /// @param redraw draws frames that do not fit into options.window_memory; empty: all frames are kept.
   Trainer(const model::PolicyOptions& policy, const TrainingOptions& training, const core::Vocabulary& vocabulary,
-          std::uint64_t seed);
+          std::uint64_t seed, Redraw redraw = {});
+
+  /// Starts from a trained policy's weights instead of initial ones. To be called before the first round.
+  /// @throws Error as model::warmStart().
+  void warmStart(const model::TrainablePolicy& trained, const std::string& source);
 
   /// Adds the trajectory of the episode with number trajectoriesSeen(). Trajectories must come in order.
   void add(Trajectory trajectory);
@@ -61,21 +68,18 @@ class Trainer {
   std::uint64_t trajectoriesSeen() const { return trajectories_seen_; }
   const TrainingOptions& options() const { return options_; }
   /// The policy that acts and is saved. With options().weight_ema, it has the moving average of the trained weights.
+  /// Valid until the next trainRound() or restore().
   model::TrainablePolicy& policy() { return ema_ ? *ema_ : *learner_; }
   const model::TrainablePolicy& policy() const { return ema_ ? *ema_ : *learner_; }
-  const std::deque<Trajectory>& window() const { return window_; }
+  const TrainingWindow& window() const { return window_; }
 
  private:
-  /// A frame of the window: window_[trajectory].steps[step].
-  struct FrameIndex {
-    std::uint32_t trajectory;
-    std::uint32_t step;
-  };
-
   int newInRound() const;
-  double learningRate() const;
-  std::vector<FrameIndex> drawFrames() const;
-  double trainStep(const std::vector<model::Sample>& batch, std::uint64_t dropout_seed);
+  double learningRate(double round_done) const;
+  void restartPolicy();
+  std::vector<TrainingWindow::Index> drawFrames() const;
+  std::vector<model::Sample> makeBatch(const std::vector<TrainingWindow::Index>& frames, const ClassWeights& weights);
+  double trainStep(const std::vector<model::Sample>& batch, double learning_rate, std::uint64_t dropout_seed);
   void updateAverage();
   void checkFinite(const RoundStatistics& statistics) const;
   RoundStatistics rolloutStatistics() const;
@@ -86,7 +90,7 @@ class Trainer {
   std::unique_ptr<model::TrainablePolicy> learner_;
   std::unique_ptr<model::TrainablePolicy> ema_;  // null if options_.weight_ema is 0
   nn::Adam adam_;
-  std::deque<Trajectory> window_;
+  TrainingWindow window_;
   int new_trajectories_ = 0;
   std::uint64_t trajectories_seen_ = 0;
   std::uint64_t rounds_ = 0;

@@ -22,6 +22,9 @@ using ClassWeights = std::array<float, core::kActionCount>;
 /// that is a label once. Steps that isTrainedOn() leaves out are counted, too.
 ClassWeights classWeights(const std::deque<Trajectory>& window, const TrainingOptions& options);
 
+/// Removes the labelled requests that no sample is made of, to save memory.
+void dropUntrainedRequests(Trajectory& trajectory, const TrainingOptions& options);
+
 /// False only with options.skip_repeats, for a repeat in which the policy's action was optimal.
 bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options);
 

@@ -22,13 +22,18 @@ struct LabelledRequest {
 /// The maximum number of labelled requests of a frame, including the policy's own.
 inline constexpr int kMaxRequestsPerFrame = 8;
 
+/// RGB8 (image_size, image_size, 3).
+using SharedFrame = std::shared_ptr<const std::vector<std::uint8_t>>;
+
 /// One step of a rollout, as training stores it.
 struct TrajectoryStep {
-  /// RGB8 (image_size, image_size, 3). If nothing has changed, it shares the memory of the previous step's frame.
-  std::shared_ptr<const std::vector<std::uint8_t>> frame;
-  core::Request request;  ///< the policy's request
-  core::Action action;    ///< the policy's action
-  expert::Label label;    ///< the greedy expert's
+  SharedFrame frame;               ///< null where a TrainingWindow does not keep it
+  bool is_new_frame = true;        ///< false: `frame` shares the memory of the previous step's frame, which is equal
+  world::Orientation orientation;  ///< of the camera
+  sim::InstanceMask present = 0;   ///< the objects on the counter
+  core::Request request;           ///< the policy's request
+  core::Action action;             ///< the action that was taken, by the policy or by the training expert
+  expert::Label label;             ///< the greedy expert's
   /// The training expert's labels: for the policy's own request first, then for others; at most kMaxRequestsPerFrame.
   std::vector<LabelledRequest> labelled_requests;
   int nearest_item = -1;  ///< the item that COLLECT or REMOVE would take; -1 if the cone is empty
@@ -37,14 +42,15 @@ struct TrajectoryStep {
 
 /// A labelled rollout of one episode.
 struct Trajectory {
-  std::uint64_t episode = 0;  ///< its number in the session
+  std::uint64_t episode = 0;             ///< its number in the session
+  std::vector<sim::Instance> instances;  ///< the objects, present or not
   std::vector<TrajectoryStep> steps;
   sim::Score score;
 
   /// The frames that a policy sees at `step`.
   core::FrameStack frameStack(std::size_t step) const;
 
-  /// The share of steps at which the policy's action is the greedy expert's label.
+  /// The share of steps at which the action is the greedy expert's label.
   double agreement() const;
 };
 
@@ -66,6 +72,12 @@ const std::vector<std::string>& trainingExpertNames();
 /// @throws Error naming the known ones.
 TrainingExpert trainingExpertFromName(const std::string& name);
 
+/// The training expert's label of a state.
+/// @param pan_direction over the frames that the policy sees. @param request need not be the state's.
+expert::Label trainingLabel(TrainingExpert training_expert, const sim::ConeTable& cone,
+                            const std::vector<sim::Instance>& instances, const sim::EpisodeState& state,
+                            expert::PanDirection pan_direction, const core::Request& request);
+
 /// Turns the states of one episode into a labelled trajectory. Rollouts in one process and the trainer node, which gets
 /// the states as messages, both use it.
 class TrajectoryRecorder {
@@ -79,7 +91,7 @@ class TrajectoryRecorder {
   /// @return the step, valid until the next call. Its action is IDLE until setAction().
   const TrajectoryStep& record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame);
 
-  /// Sets the policy's action in the last recorded state.
+  /// Sets the action that was taken in the last recorded state.
   void setAction(core::Action action) { trajectory_.steps.back().action = action; }
 
   const Trajectory& trajectory() const { return trajectory_; }
@@ -96,8 +108,8 @@ class TrajectoryRecorder {
   bool repeatsLast() const;
 
   std::uint64_t seed_;
-  std::vector<sim::Instance> instances_;
   std::shared_ptr<const sim::ConeTable> cone_;
+  sim::HeldOutPairs held_out_pairs_;
   TrainingExpert training_expert_;
   int requested_ = 0;            // instances requested at step 0
   std::vector<int> latest_pan_;  // pan [steps] of the last kStackedFrames frames, the oldest first

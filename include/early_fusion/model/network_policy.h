@@ -27,6 +27,8 @@ class NetworkPolicy : public TrainablePolicy {
   void setNormalisation(nn::Normalisation normalisation) override { trunk_->setNormalisation(normalisation); }
   void predict(const std::vector<Observation>& observations, Probabilities& probabilities) override;
   double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) override;
+  int featureCount() const override { return static_cast<int>(thread_features_.cols()); }
+  void predictFeatures(const std::vector<Observation>& observations, nn::Matrix& features) override;
 
  protected:
   /// @param feature_count the number of inputs of the head.
@@ -62,6 +64,10 @@ class NetworkPolicy : public TrainablePolicy {
   void reserve(int rows);
   void reservePrediction(int rows);
   void predictFeatures(int row, const Observation& observation, int thread, float* features);
+  /// Computes the features of each observation, in parallel. @param use (int row, const float* features), called by any
+  /// thread.
+  template <class Use>
+  void forEachFeatures(const std::vector<Observation>& observations, const Use& use);
 
   PolicyOptions options_;
   core::Vocabulary vocabulary_;

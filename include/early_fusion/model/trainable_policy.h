@@ -7,6 +7,7 @@
 #include "early_fusion/model/sample.h"
 #include "early_fusion/nn/batch_norm.h"
 #include "early_fusion/nn/parameters.h"
+#include "early_fusion/nn/tiled_goal.h"
 
 namespace early_fusion::model {
 
@@ -29,6 +30,13 @@ class TrainablePolicy : public GoalPolicy {
   /// share the computation before the goal joins, and count as one image in the batch statistics of that part.
   /// @param dropout_seed determines the dropout mask. @return the loss.
   virtual double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) = 0;
+
+  /// The number of features that the policy's head decides from.
+  virtual int featureCount() const = 0;
+
+  /// Inference up to the head, for another network on the same features.
+  /// @param features (observations, featureCount()); may have more rows.
+  virtual void predictFeatures(const std::vector<Observation>& observations, nn::Matrix& features) = 0;
 };
 
 }  // namespace early_fusion::model

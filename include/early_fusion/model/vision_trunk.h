@@ -75,6 +75,9 @@ class VisionTrunk {
   virtual void predict(int thread, const core::FrameStack& frames, const float* goal, float* map) = 0;
 };
 
+/// What PolicyOptions::precision means on this processor: "f32" or "bf16".
+std::string resolvedPrecision(const std::string& precision);
+
 /// Adds "block1.conv.weight" to "block4.norm.bias" to `parameters`, which must outlive the trunk.
 /// @param precision of maps and convolutions, as in PolicyOptions. Everything else is float.
 std::unique_ptr<VisionTrunk> makeVisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape,

@@ -6,17 +6,12 @@ namespace early_fusion::nn {
 
 /// How the weights of the regions follow from their scores.
 enum class AttentionWeights {
-  kLinear,   ///< score / regions; may be negative
+  kLinear,   ///< the scores themselves; may be negative
   kSoftmax,  ///< softmax of the scores over the regions
 };
 
 /// Attention over the regions of a map. A query scores each region, and the regions are summed by their weights:
 ///   score_i = sum_c query_c map_ci,   pooled_c = sum_i weight_i map_ci.
-///
-/// Without the factor 1 / regions, linear attention would make `pooled` larger than the query by about the number of
-/// regions (64), because sum_i map_i map_i^T grows with it. The layer that follows reads both, and one step of Adam
-/// would change its output by that much more through `pooled`. The factor adds no restriction: the next layer's weights
-/// could contain it.
 /// Source: Walsman et al. 2019, sec. III-D.
 class AttentionPooling {
  public:

@@ -38,6 +38,8 @@ class Episode {
   const ConeTable& cone() const { return *cone_; }
   /// The same table for users that outlive the episode, such as TrajectoryRecorder.
   std::shared_ptr<const ConeTable> sharedCone() const { return cone_; }
+  /// The pairs of items that are held out from training, by the task.
+  const HeldOutPairs& heldOutPairs() const { return held_out_pairs_; }
 
   bool finished() const { return state_.step >= steps_; }
 
@@ -59,6 +61,7 @@ class Episode {
   EpisodeSetup setup_;
   EpisodeState state_;
   std::shared_ptr<const ConeTable> cone_;
+  HeldOutPairs held_out_pairs_;
   int steps_;
   core::Request outstanding_;  // requested and not yet collected, including objects that were removed
   int requested_ = 0;

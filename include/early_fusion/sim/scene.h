@@ -30,7 +30,7 @@ using InstanceMask = std::uint32_t;
 /// Names an episode. With the same world, the same key gives the same scene, request and first orientation in every
 /// process.
 struct EpisodeKey {
-  Task task;                 ///< including max_instances, because the scene depends on it
+  Task task;                 ///< including max_instances and pairs, because scene and request depend on them
   std::uint64_t seed = 0;    ///< of the session
   std::uint64_t number = 0;  ///< the episode's number in the session, from 0
 };
@@ -48,8 +48,10 @@ Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& ins
 std::vector<world::ObjectPose> presentObjects(const world::World& world, const std::vector<Instance>& instances,
                                               InstanceMask present);
 
-/// Draws types, collision-free poses, the request and the first orientation, each uniformly.
-/// @throws Error naming how many instances could be placed if they do not fit on the counter after many tries.
+/// Draws types, collision-free poses, the request among those that task.pairs allows, and the first orientation, each
+/// uniformly. A scene without an allowed request is drawn again.
+/// @throws Error naming how many instances could be placed if they do not fit on the counter after many tries; if many
+/// scenes have no allowed request.
 EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random);
 
 /// The same with the key's own random stream.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "early_fusion/core/options.h"
+#include "early_fusion/sim/held_out_pairs.h"
 
 namespace early_fusion::sim {
 
@@ -14,6 +15,8 @@ struct Task {
   int max_instances = 0;  ///< not an option; see withUpTo(). The maximum number of objects that an episode draws
   int requested = 1;      ///< the number of requested instances
   int steps = 48;         ///< actions in an episode
+  PairSplit pair_split;   ///< not an option; see withPairs()
+  PairChoice pairs = PairChoice::kAll;  ///< not an option; see withPairs()
 
   core::OptionSet options();
   int maxInstances() const { return max_instances > instances ? max_instances : instances; }
@@ -30,5 +33,10 @@ Task loadTask(const std::string& name_or_file);
 /// The task for training episodes with up to `most` instances. Returns the task itself if it has that many already.
 /// @throws Error if `most` is more than kMaxInstances.
 Task withUpTo(std::int64_t most, Task task);
+
+/// The task with requests of trained or of held-out pairs only, or of any. @param choice one of pairChoiceNames().
+/// @throws Error for an unknown choice or a split out of range; unless the choice is "all", if no pairs are held out or
+/// the task requests a single instance.
+Task withPairs(const std::string& choice, PairSplit split, Task task);
 
 }  // namespace early_fusion::sim

@@ -1,5 +1,6 @@
 #include "early_fusion/ros/policy/acting_policy.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "early_fusion/model/policy_file.h"
@@ -17,9 +18,9 @@ void ActingPolicy::load(nn::WeightsFile file, const std::string& source, const A
   choice_ = choice;
 }
 
-model::Observation ActingPolicy::observation() const {
+model::Observation ActingPolicy::observation(const core::Request& request) const {
   model::Observation observation;
-  observation.request = &request_;
+  observation.request = &request;
   observation.frames = core::frameStack(frames_.size() - 1, [this](std::size_t at) { return frames_[at].rgb.data(); });
   return observation;
 }
@@ -43,7 +44,7 @@ Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::s
   assert(loaded() && frame.width == imageSize() && frame.height == imageSize());
   request_ = policy_->vocabulary().request(items);
   remember(frame, episode, step);
-  policy_->predict({observation()}, probabilities_);
+  policy_->predict({observation(request_)}, probabilities_);
   Decision decision;
   decision.action = model::chooseAction(probabilities_.row(0), choice_, acting_.seed, episode, step);
   decision.probabilities.assign(probabilities_.data(), probabilities_.data() + core::kActionCount);
@@ -51,13 +52,28 @@ Decision ActingPolicy::decide(const core::Image& frame, const std::vector<std::s
   return decision;
 }
 
+LikelyItem ActingPolicy::likeliestItem(core::Action action) {
+  assert(!frames_.empty() && !request_.empty());
+  core::Request items = request_;
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+  std::vector<core::Request> requests;
+  for (const int item : items) requests.push_back({item});
+  std::vector<model::Observation> observations;
+  for (const core::Request& request : requests) observations.push_back(observation(request));
+  model::Probabilities probabilities;
+  policy_->predict(observations, probabilities);
+  Eigen::Index likeliest;
+  const float probability = probabilities.col(static_cast<int>(action)).maxCoeff(&likeliest);
+  return {policy_->vocabulary().name(items[likeliest]), probability};
+}
+
 core::Image ActingPolicy::lastImageTinted(int saliency_grid) {
   assert(!frames_.empty());
   core::Image image = frames_.back();
-  if (const auto attention = policy_->attention(observation())) {
+  if (const auto attention = policy_->attention(observation(request_))) {
     model::tint(image, *attention);
   } else if (saliency_grid > 0) {
-    model::tint(image, model::occlusionSaliency(*policy_, observation(), saliency_grid));
+    model::tint(image, model::occlusionSaliency(*policy_, observation(request_), saliency_grid));
   }
   return image;
 }

@@ -16,7 +16,7 @@ namespace early_fusion::nodes {
 
 namespace {
 
-// A camera sends many images for each request. Images wait in this queue for a request with their stamp.
+// A camera sends many images for each request. So many wait for a request with their stamp.
 constexpr int kImageQueue = 30;
 
 }  // namespace
@@ -29,6 +29,11 @@ core::OptionSet PolicyNode::Options::options() {
   set.addChoice("precision", acting.precision, model::precisionNames(),
                 "arithmetic of weights from a file; auto: bf16 if the processor computes faster in it, else f32");
   set.add("image_transport", image_transport, "how images are received: raw, compressed, or another installed plugin");
+  set.addChoice("rectified", rectified, {"auto", "true", "false"},
+                "whether the images are rectified, so that P of camera_info describes them instead of K; auto: if the "
+                "image topic's name says so (image_rect)");
+  set.add("name_items", name_items,
+          "say which requested item a COLLECT or REMOVE is for; costs one prediction for each requested item then");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "enlargement of the annotated image");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "maximum number of annotated images a second");
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
@@ -41,11 +46,11 @@ core::OptionSet PolicyNode::Options::options() {
 PolicyNode::PolicyNode(const Options& options)
     : options_(options),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
+      pairing_(kImageQueue),
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
       action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
-      status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)),
-      synchronizer_(SameStamp(kImageQueue)) {
+      status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)) {
   if (!options_.weights.empty()) loadFile(options_.weights);
   publishStatus();
   load_server_ = node_.advertiseService(kLoadWeightsService, &PolicyNode::onLoadWeights, this);
@@ -53,50 +58,92 @@ PolicyNode::PolicyNode(const Options& options)
   weights_subscriber_ =
       node_.subscribe<Weights>(kWeightsTopic, 1, [this](const WeightsConstPtr& message) { onWeights(*message); });
   camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
-      kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) { camera_info_ = message; });
+      kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) {
+        camera_info_ = message;
+        watch_.heard(camera_info_subscriber_.getTopic());
+      });
   const auto hints = ::ros::TransportHints().tcpNoDelay();
-  synchronizer_.connectInput(image_subscriber_, request_subscriber_);
-  synchronizer_.registerCallback(&PolicyNode::onImage, this);
-  request_subscriber_.subscribe(node_, kRequestTopic, kImageQueue, hints);
-  image_subscriber_.subscribe(image_transport_, kImageTopic, kImageQueue,
-                              image_transport::TransportHints(options_.image_transport, hints));
+  request_subscriber_ = node_.subscribe<Request>(
+      kRequestTopic, kImageQueue, [this](const RequestConstPtr& request) { onRequest(request); }, ::ros::VoidConstPtr(),
+      hints);
+  image_subscriber_ = image_transport_.subscribe(kImageTopic, kImageQueue, &PolicyNode::onImage, this,
+                                                 image_transport::TransportHints(options_.image_transport, hints));
+  if (policy_.loaded()) expectTopics();
 }
 
-void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request) {
+void PolicyNode::expectTopics() {
+  watch_.expect(neededImage(image_subscriber_.getTopic(), options_.image_transport,
+                            "remap camera/image_raw to the camera's (real_camera.launch: image)"));
+  watch_.expect({"request", request_subscriber_.getTopic(), "early_fusion/Request",
+                 "start request_node in this namespace, or the simulator"});
+}
+
+void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image) {
+  watch_.heard(image_subscriber_.getTopic());
+  watch_.expect({"camera_info", camera_info_subscriber_.getTopic(), "sensor_msgs/CameraInfo",
+                 "remap camera/camera_info to the camera's (real_camera.launch: camera_info); until then the policy "
+                 "sees the largest square of the image"});
+  if (const auto pair = pairing_.add(image)) answer(*pair->first, *pair->second);
+}
+
+void PolicyNode::onRequest(const RequestConstPtr& request) {
+  watch_.heard(request_subscriber_.getTopic());
+  if (const auto pair = pairing_.add(request)) answer(*pair->first, *pair->second);
+}
+
+void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request) {
   const ::ros::WallTime began = ::ros::WallTime::now();
   health_.count("images");
   if (!policy_.loaded()) {
     return health_.drop("image without weights",
                         "no weights yet; set ~weights, call 'load_weights', or publish them on 'weights'");
   }
-  const bool again = answer_valid_ && answer_.header.stamp == request->header.stamp &&
-                     answer_.episode == request->episode && answer_.step == request->step;
+  const bool again = answer_valid_ && answer_.header.stamp == request.header.stamp &&
+                     answer_.episode == request.episode && answer_.step == request.step;
   if (again) return action_publisher_.publish(answer_);
-  core::Image frame;
   Decision decision;
   try {
-    const int edge = cropEdge(*image, camera_info_.get(), policy_.horizontalFovDeg());
-    frame = policyImage(image, edge, policy_.imageSize());
-  } catch (const core::Error& error) {
-    return health_.drop("unusable image", error.what());
+    decision = decide(image, request);
+  } catch (const std::exception& error) {  // a library's, too: no message may end the node
+    return health_.drop("unusable image or request", error.what());
   }
-  try {
-    decision = policy_.decide(frame, request->items, request->episode, request->step);
-  } catch (const core::Error& error) {
-    return health_.drop("unusable request", error.what());
-  }
-  answer_.header = image->header;
-  answer_.episode = request->episode;
-  answer_.step = request->step;
+  answer_.header = image.header;
+  answer_.episode = request.episode;
+  answer_.step = request.step;
   answer_.name = core::actionName(decision.action);
   answer_.probabilities = decision.probabilities;
   answer_.weights = weights_id_;
   answer_.mode = policy_.acting().mode;
   answer_.frames = static_cast<std::uint8_t>(decision.frames);
+  nameItem(decision.action, request);
   answer_valid_ = true;
   action_publisher_.publish(answer_);
   latency_sec_ = (::ros::WallTime::now() - began).toSec();
-  publishAnnotated(image->header, *request);
+  publishAnnotated(image.header, request);
+}
+
+Decision PolicyNode::decide(const sensor_msgs::Image& image, const Request& request) {
+  const core::Image frame = policyImage(image, cropOf(image), policy_.imageSize());
+  return policy_.decide(frame, request.items, request.episode, request.step);
+}
+
+Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
+  const bool rectified =
+      options_.rectified == "auto" ? isRectifiedTopic(image_subscriber_.getTopic()) : options_.rectified == "true";
+  Crop crop = cropToView(image, camera_info_.get(), rectified, policy_.horizontalFovDeg());
+  if (crop.warning != crop_warning_ && !crop.warning.empty()) {
+    ROS_WARN("%s: %s", camera_info_subscriber_.getTopic().c_str(), crop.warning.c_str());
+  }
+  crop_warning_ = crop.warning;
+  return crop;
+}
+
+void PolicyNode::nameItem(core::Action action, const Request& request) {
+  const bool picks = action == core::Action::kCollect || action == core::Action::kRemove;
+  LikelyItem item;
+  if (options_.name_items && picks && !request.items.empty()) item = policy_.likeliestItem(action);
+  answer_.item = item.name;
+  answer_.item_probability = item.probability;
 }
 
 void PolicyNode::onWeights(const Weights& message) {
@@ -104,7 +151,7 @@ void PolicyNode::onWeights(const Weights& message) {
     const std::string bytes(message.data.begin(), message.data.end());
     const std::string source = "weights '" + message.id + "' from topic " + weights_subscriber_.getTopic();
     load(message.id, nn::WeightsFile::parse(bytes, source), source, {message.mode, message.seed, message.precision});
-  } catch (const core::Error& error) {
+  } catch (const std::exception& error) {
     health_.drop("unusable weights", error.what());
   }
 }
@@ -115,6 +162,7 @@ void PolicyNode::load(const std::string& id, nn::WeightsFile file, const std::st
   answer_valid_ = false;
   health_.count("weights loaded");
   publishStatus();
+  if (image_subscriber_) expectTopics();
 }
 
 void PolicyNode::loadFile(const std::string& path) {

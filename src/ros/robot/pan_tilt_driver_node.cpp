@@ -1,39 +1,43 @@
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 
 #include <std_msgs/Float64.h>
+#include <trajectory_msgs/JointTrajectory.h>
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
 
 namespace {
 
-constexpr char kPanCommandTopic[] = "pan_position_controller/command";
-constexpr char kTiltCommandTopic[] = "tilt_position_controller/command";
+constexpr char kDescriptionParameter[] = "robot_description";
+constexpr int kJointStateQueue = 100;  // joints may come one a message, from several nodes
+constexpr std::size_t kShownJointNames = 40;
 
-world::CameraRig loadRig(const PanTiltDriverNode::Options& options) {
-  const std::string urdf = options.urdf.empty() ? core::shareFolder() + "/urdf/pan_tilt_camera.urdf" : options.urdf;
-  return world::CameraRig::load(urdf, options.pan_joint, options.tilt_joint, options.optical_frame);
-}
-
-/// The angle of one joint in steps, matched by name.
-std::optional<int> stepsOf(const sensor_msgs::JointState& states, const std::string& joint) {
-  for (std::size_t i = 0; i < states.name.size() && i < states.position.size(); ++i) {
-    if (states.name[i] != joint || !std::isfinite(states.position[i])) continue;
-    return static_cast<int>(std::lround(states.position[i] / world::kStepRad));
+/// The unit of the URDF file, else of the robot description, else of the package's own URDF.
+world::PanTiltUnit loadUnit(const ::ros::NodeHandle& node, const PanTiltDriverNode::Options& options) {
+  std::string xml, source = options.urdf, parameter;
+  if (source.empty() && node.searchParam(kDescriptionParameter, parameter) && node.getParam(parameter, xml)) {
+    source = "parameter " + parameter;
+  } else {
+    if (source.empty()) source = core::shareFolder() + "/urdf/pan_tilt_camera.urdf";
+    xml = core::readFile(source);
   }
-  return std::nullopt;
+  ROS_INFO("joints %s and %s as in %s", options.pan_joint.c_str(), options.tilt_joint.c_str(), source.c_str());
+  return world::PanTiltUnit::parse(xml, source, options.pan_joint, options.tilt_joint, options.optical_frame);
 }
 
-std_msgs::Float64 angleMessage(int steps) {
+double nowSec() { return ::ros::WallTime::now().toSec(); }
+
+double middle(const world::UnitJoint& joint) { return joint.continuous ? 0 : (joint.lower_rad + joint.upper_rad) / 2; }
+
+std_msgs::Float64 angleMessage(double angle_rad) {
   std_msgs::Float64 message;
-  message.data = steps * world::kStepRad;
+  message.data = angle_rad;
   return message;
 }
 
@@ -41,42 +45,65 @@ std_msgs::Float64 angleMessage(int steps) {
 
 core::OptionSet PanTiltDriverNode::Options::options() {
   core::OptionSet set("pan_tilt_driver");
-  set.add("urdf", urdf, "URDF with the joints and limits; empty: the package's urdf/pan_tilt_camera.urdf");
+  set.add("urdf", urdf,
+          "URDF with the joints and limits; empty: the parameter robot_description, or else the package's "
+          "urdf/pan_tilt_camera.urdf");
   set.add("pan_joint", pan_joint, "name of the pan joint in the URDF and in the joint states");
   set.add("tilt_joint", tilt_joint, "name of the tilt joint in the URDF and in the joint states");
   set.add("optical_frame", optical_frame, "the camera's link in the URDF (z forward, x right, y down)");
-  set.add("use_joint_states", use_joint_states,
-          "start from the joints' positions; false: move to the middle of the limits first");
+  set.addChoice("command", command, {"position", "trajectory"},
+                "what the controllers take: std_msgs/Float64 on a topic for each joint, or "
+                "trajectory_msgs/JointTrajectory with both joints");
+  set.add("move_time", move_time_sec, 0.01, 60, "s", "duration of a move of 2 degrees, for command:=trajectory");
+  set.add(
+      "use_joint_states", use_joint_states,
+      "start from the joints' positions; false: for a unit without encoders, which turns to the middle of its limits "
+      "at the start");
+  set.add("joint_state_timeout", joint_state_timeout_sec, 0.05, 3600, "s",
+          "the unit is not moved if its newest joint states are older");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
 
+// A command is latched only where it says where the unit stands. Otherwise a controller that starts later would turn
+// the unit to where it was once.
 PanTiltDriverNode::PanTiltDriverNode(const Options& options)
-    : options_(options),
-      rig_(loadRig(options)),
-      pan_publisher_(node_.advertise<std_msgs::Float64>(kPanCommandTopic, 1, true)),
-      tilt_publisher_(node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1, true)) {
+    : options_(options), stepper_(loadUnit(node_, options), options.joint_state_timeout_sec) {
+  const bool latch = !options_.use_joint_states;
+  if (options_.command == "trajectory") {
+    trajectory_publisher_ = node_.advertise<trajectory_msgs::JointTrajectory>(kTrajectoryCommandTopic, 1, latch);
+  } else {
+    pan_publisher_ = node_.advertise<std_msgs::Float64>(kPanCommandTopic, 1, latch);
+    tilt_publisher_ = node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1, latch);
+  }
   action_subscriber_ =
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
   request_subscriber_ = node_.subscribe<Request>(
       kRequestTopic, 1, [this](const RequestConstPtr& request) { latest_request_ = request->header.stamp; });
   if (options_.use_joint_states) {
-    joint_subscriber_ = node_.subscribe<sensor_msgs::JointState>(
-        kJointStatesTopic, 1, [this](const sensor_msgs::JointStateConstPtr& states) { onJointStates(*states); });
+    joint_subscriber_ = node_.subscribe(kJointStatesTopic, kJointStateQueue, &PanTiltDriverNode::onJointStates, this);
   } else {
-    target_ = rig_.lattice().at(rig_.lattice().size() / 2);
-    publishCommand();
+    moveToTheMiddle();
   }
 }
 
-void PanTiltDriverNode::onJointStates(const sensor_msgs::JointState& states) {
-  if (target_) return;  // later positions follow from the commands: rounding a moving joint's position would lose steps
-  const std::optional<int> pan = stepsOf(states, rig_.panJoint());
-  const std::optional<int> tilt = stepsOf(states, rig_.tiltJoint());
-  if (!pan || !tilt) return;
-  const world::OrientationLattice& lattice = rig_.lattice();
-  target_ = {std::clamp(*pan, lattice.lowest.pan, lattice.highest.pan),
-             std::clamp(*tilt, lattice.lowest.tilt, lattice.highest.tilt)};
+void PanTiltDriverNode::moveToTheMiddle() {
+  for (JointStepper* joint : {&stepper_.pan(), &stepper_.tilt()}) joint->assume(middle(joint->joint()));
+  command(true, true);
+  ROS_WARN("without joint states it is not known where the unit stands: it turns to the middle of its limits");
+}
+
+void PanTiltDriverNode::onJointStates(const ::ros::MessageEvent<const sensor_msgs::JointState>& event) {
+  const sensor_msgs::JointState& states = *event.getConstMessage();
+  for (std::size_t i = 0; i < states.name.size() && i < states.position.size(); ++i) {
+    if (joint_names_.size() < kShownJointNames) joint_names_.insert(states.name[i]);
+    for (JointStepper* joint : {&stepper_.pan(), &stepper_.tilt()}) {
+      if (states.name[i] != joint->joint().name) continue;
+      if (joint->observe(states.position[i], event.getPublisherName(), nowSec())) continue;
+      health_.drop("unusable joint state",
+                   "the position of '" + states.name[i] + "' from " + event.getPublisherName() + " is not finite");
+    }
+  }
 }
 
 void PanTiltDriverNode::onAction(const Action& message) {
@@ -86,26 +113,56 @@ void PanTiltDriverNode::onAction(const Action& message) {
            << latest_request_ << "; increase answer_timeout of request_node if the policy needs longer";
     return health_.drop("late action", detail.str());
   }
-  if (!target_) {
-    return health_.drop("action too early", "no joint states of '" + rig_.panJoint() + "' and '" + rig_.tiltJoint() +
-                                                "' yet, so " + message.name + " cannot be carried out");
-  }
   try {
-    const core::Action action = core::actionFromName(message.name);
-    const world::Orientation moved = world::turned(*target_, action);
-    if (moved == *target_) return;
-    if (!rig_.lattice().contains(moved)) return health_.count("moves at a joint limit");
-    target_ = moved;
-    publishCommand();
+    move(core::actionFromName(message.name));
   } catch (const core::Error& error) {
     health_.drop("unknown action", error.what());
   }
 }
 
-void PanTiltDriverNode::publishCommand() {
-  pan_publisher_.publish(angleMessage(target_->pan));
-  tilt_publisher_.publish(angleMessage(target_->tilt));
+void PanTiltDriverNode::move(core::Action action) {
+  if (world::turned({}, action) == world::Orientation{}) return;
+  const std::string unheard = unheardCommand();
+  if (!unheard.empty()) {
+    return health_.drop("move without a controller", "nobody subscribes to " + unheard +
+                                                         "; start the controller, or set the topic of its commands "
+                                                         "(pan_command and tilt_command, or trajectory_command)");
+  }
+  const PanTiltStepper::Move move = stepper_.move(action, nowSec());
+  if (!move.refusal.empty()) {
+    std::string seen = core::joined({joint_names_.begin(), joint_names_.end()});
+    if (seen.empty()) seen = "nothing";
+    return health_.drop("move that is not safe", move.refusal + "; " + joint_subscriber_.getTopic() + " has " + seen);
+  }
+  for (const std::string& warning : move.warnings) {
+    health_.count("moves from elsewhere than the last command");
+    ROS_WARN("%s", warning.c_str());
+  }
+  if (move.at_limit) health_.count("moves at a joint limit");
+  if (move.pans || move.tilts) command(move.pans, move.tilts);
+}
+
+void PanTiltDriverNode::command(bool pans, bool tilts) {
+  if (pan_publisher_ && pans) pan_publisher_.publish(angleMessage(stepper_.pan().position()));
+  if (tilt_publisher_ && tilts) tilt_publisher_.publish(angleMessage(stepper_.tilt().position()));
+  if (trajectory_publisher_) {
+    trajectory_msgs::JointTrajectory trajectory;  // without a stamp: it begins at once
+    trajectory.joint_names = {stepper_.pan().joint().name, stepper_.tilt().joint().name};
+    trajectory.points.resize(1);
+    trajectory.points[0].positions = {stepper_.pan().position(), stepper_.tilt().position()};
+    trajectory.points[0].velocities = {0, 0};
+    trajectory.points[0].time_from_start = ::ros::Duration(options_.move_time_sec);
+    trajectory_publisher_.publish(trajectory);
+  }
   health_.count("commands");
+}
+
+/// A command topic without subscriber; empty where there is none.
+std::string PanTiltDriverNode::unheardCommand() const {
+  for (const ::ros::Publisher* publisher : {&pan_publisher_, &tilt_publisher_, &trajectory_publisher_}) {
+    if (*publisher && publisher->getNumSubscribers() == 0) return publisher->getTopic();
+  }
+  return "";
 }
 
 }  // namespace early_fusion::nodes

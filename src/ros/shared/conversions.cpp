@@ -22,8 +22,42 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
   return message;
 }
 
+geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
+  const Eigen::Quaterniond rotation(transform.linear());
+  geometry_msgs::Pose pose;
+  pose.position.x = transform.translation().x();
+  pose.position.y = transform.translation().y();
+  pose.position.z = transform.translation().z();
+  pose.orientation.x = rotation.x();
+  pose.orientation.y = rotation.y();
+  pose.orientation.z = rotation.z();
+  pose.orientation.w = rotation.w();
+  return pose;
+}
+
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
-  return {sim::withUpTo(goal.max_instances, sim::loadTask(goal.task)), goal.seed, goal.first_episode};
+  const sim::Task task = sim::withUpTo(goal.max_instances, sim::loadTask(goal.task));
+  const std::string pairs = goal.pairs.empty() ? "all" : goal.pairs;
+  return {sim::withPairs(pairs, {goal.held_out_pairs, goal.held_out_pairs_seed}, task), goal.seed, goal.first_episode};
+}
+
+void setPairs(const sim::Task& task, RunEpisodesGoal& goal) {
+  goal.pairs = sim::pairChoiceName(task.pairs);
+  goal.held_out_pairs = task.pair_split.held_out_pairs;
+  goal.held_out_pairs_seed = task.pair_split.held_out_pairs_seed;
+}
+
+learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal) {
+  if (!(goal.expert_share >= 0 && goal.expert_share <= 1)) {
+    throw core::Error("expert_share is " + std::to_string(goal.expert_share) + "; it must be in [0, 1]");
+  }
+  if (goal.expert_share_per.empty()) return {goal.expert_share, learning::DriveUnit::kStep};
+  return {goal.expert_share, learning::driveUnitFromName(goal.expert_share_per)};
+}
+
+learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal) {
+  if (goal.training_expert.empty()) return learning::TrainingExpert::kGreedy;
+  return learning::trainingExpertFromName(goal.training_expert);
 }
 
 sensor_msgs::CameraInfo cameraInfoMessage(int image_size, double horizontal_fov_deg, const std_msgs::Header& header) {

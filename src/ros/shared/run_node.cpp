@@ -2,7 +2,10 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/names.h>
+#include <ros/node_handle.h>
 #include <ros/param.h>
+#include <ros/wall_timer.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -32,6 +35,20 @@ void reportFailure(const std::string& reason) {
   }
 }
 
+constexpr double kClockPatienceSec = 3;
+
+/// Says if simulated time stands still because nobody publishes it. By wall time, once.
+::ros::WallTimer warnWithoutClock() {
+  const auto check = [](const ::ros::WallTimerEvent&) {
+    if (!::ros::Time::isSimTime() || !::ros::Time::now().isZero()) return;
+    ROS_WARN(
+        "the parameter /use_sim_time is true, but nobody has published %s for %.0f s, so time stands still at 0; "
+        "play the bag with --clock, start the simulator, or: rosparam set /use_sim_time false, and start again",
+        ::ros::names::resolve("/clock").c_str(), kClockPatienceSec);
+  };
+  return ::ros::NodeHandle().createWallTimer(::ros::WallDuration(kClockPatienceSec), check, true);
+}
+
 }  // namespace
 
 int runNode(int argc, char** argv, const std::string& name, const core::OptionSet& options,
@@ -44,6 +61,7 @@ int runNode(int argc, char** argv, const std::string& name, const core::OptionSe
   try {
     ::ros::init(argc, argv, name);
     ::ros::start();  // keeps the console alive after the node's last handle, so that the reason of a failure is logged
+    const ::ros::WallTimer clock_check = warnWithoutClock();
     run();
     return 0;
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "early_fusion/core/file.h"
+#include "early_fusion/ros/shared/conversions.h"
 
 namespace early_fusion::nodes {
 
@@ -10,19 +11,6 @@ namespace {
 
 constexpr double kNameHeight = 0.03;  // [m], of a capital letter
 constexpr double kNameGap = 0.02;     // [m], between an object and its name
-
-geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
-  const Eigen::Quaterniond rotation(transform.linear());
-  geometry_msgs::Pose pose;
-  pose.position.x = transform.translation().x();
-  pose.position.y = transform.translation().y();
-  pose.position.z = transform.translation().z();
-  pose.orientation.x = rotation.x();
-  pose.orientation.y = rotation.y();
-  pose.orientation.z = rotation.z();
-  pose.orientation.w = rotation.w();
-  return pose;
-}
 
 visualization_msgs::Marker meshMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
   visualization_msgs::Marker marker;

@@ -49,6 +49,8 @@ void SimulatorNode::onGoal() {
   goal_ = GoalProgress();
   goal_.end = goal->first_episode + goal->episodes;
   try {
+    goal_.drive = expertDrive(*goal);
+    goal_.training_expert = trainingExpert(*goal);
     if (goal->episodes == 0) throw core::Error("episodes is 0; it must be at least 1");
     begin(Driver::kGoal, firstEpisode(*goal));
   } catch (const core::Error& error) {
@@ -64,7 +66,8 @@ void SimulatorNode::onPreempt() {
 }
 
 void SimulatorNode::begin(Driver driver, const sim::EpisodeKey& key) {
-  Play play{key, sim::Episode(*world_, key), ""};
+  Play play{key, sim::Episode(*world_, key), "", {}};
+  play.pans.push_back(play.episode.state().orientation.pan);
   driver_ = driver;
   play_ = std::move(play);
   publishWhenDue();
@@ -102,14 +105,25 @@ void SimulatorNode::onAction(const Action& message) {
   if (message.header.stamp != awaited_) return health_.drop("action for another image", what + " (stamps differ)");
   core::Action action;
   try {
-    action = core::actionFromName(message.name);
+    action = actionToTake(core::actionFromName(message.name));
   } catch (const core::Error& error) {
     return health_.drop("unknown action", error.what());
   }
   play_->episode.step(action);
+  play_->pans.push_back(play_->episode.state().orientation.pan);
   play_->previous_action = core::actionName(action);
   if (play_->episode.finished()) return endEpisode();
   publishWhenDue();
+}
+
+core::Action SimulatorNode::actionToTake(core::Action policys) const {
+  const sim::EpisodeState& state = play_->episode.state();
+  const bool expert_drives =
+      driver_ == Driver::kGoal && goal_.drive.drives(play_->key.seed, play_->key.number, state.step);
+  if (!expert_drives) return policys;
+  return learning::trainingLabel(goal_.training_expert, play_->episode.cone(), play_->episode.setup().instances, state,
+                                 expert::panDirectionOver(play_->pans), state.request)
+      .action;
 }
 
 void SimulatorNode::endEpisode() {

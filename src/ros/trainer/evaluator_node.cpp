@@ -4,6 +4,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/ros/shared/conversions.h"
 
 namespace early_fusion::nodes {
 
@@ -26,6 +27,9 @@ core::OptionSet EvaluatorNode::Options::options() {
   core::OptionSet set("evaluator");
   set.add("world", world, "world file; empty: the package's config/world.yaml");
   set.add("task", task, "simple, medium, hard, or a task's YAML file");
+  set.addChoice("pairs", pairs, sim::pairChoiceNames(),
+                "requests of the episodes: all, only those without a held-out pair of items, or only those with one");
+  set.include(split.options());
   set.add("seed", seed, "seed of the episodes; those of the default are held out from all training");
   set.add("episodes", episodes, 1, 1000000, "episodes", "number of episodes");
   set.add("result", result, "JSON file for the scores; empty: print them only");
@@ -37,13 +41,14 @@ core::OptionSet EvaluatorNode::Options::options() {
 
 EvaluatorNode::EvaluatorNode(const Options& options)
     : options_(options),
+      task_(sim::withPairs(options.pairs, options.split, sim::loadTask(options.task))),
       world_(world::loadWorld(options.world)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) {
         status.add("waits for", client_.waitsFor());
         status.addf("episodes", "%zu of %d", evaluation_.outcomes.size(), options_.episodes);
       }),
       client_(node_, *world_, options.stall_sec, health_),
-      evaluation_("", sim::loadTask(options.task).name, options.seed) {  // the policy's name is in its status message
+      evaluation_("", task_, options.seed) {  // the policy's name is in its status message
   start_timer_ = node_.createWallTimer(::ros::WallDuration(kPolicyPollSec),
                                        [this](const ::ros::WallTimerEvent&) { startWhenPolicyIsThere(); });
 }
@@ -64,6 +69,7 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
   plan.goal.task = options_.task;
+  setPairs(task_, plan.goal);
   plan.goal.seed = options_.seed;
   plan.goal.episodes = static_cast<std::uint32_t>(options_.episodes);
   plan.weights = policy->weights;

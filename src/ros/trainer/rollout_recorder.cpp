@@ -23,7 +23,12 @@ bool sameState(const sim::EpisodeState& a, const sim::EpisodeState& b) {
 }  // namespace
 
 RolloutRecorder::RolloutRecorder(const world::World& world, const RolloutPlan& plan)
-    : world_(world), plan_(plan), first_(firstEpisode(plan.goal)), next_(first_.number) {}
+    : world_(world),
+      plan_(plan),
+      first_(firstEpisode(plan.goal)),
+      training_expert_(trainingExpert(plan.goal)),
+      drive_(expertDrive(plan.goal)),
+      next_(first_.number) {}
 
 bool RolloutRecorder::wants(const Scene& scene) const {
   return scene.task == first_.task.name && scene.seed == first_.seed && scene.episode >= next_ &&
@@ -37,10 +42,11 @@ void RolloutRecorder::begin(const Scene& scene) {
   if (start.instances != episode.setup().instances || !sameState(start.state, episode.state())) {
     throw core::Error(
         stepName(scene) + ": is not the episode of task '" + key.task.name + "', seed " + std::to_string(key.seed) +
-        ", with up to " + std::to_string(key.task.maxInstances()) +
-        " objects; another goal is being played, or the simulator has other task, world, object or URDF files");
+        ", with up to " + std::to_string(key.task.maxInstances()) + " objects, and with " +
+        sim::pairChoiceName(key.task.pairs) +
+        " pairs; another goal is being played, or the simulator has other task, world, object or URDF files");
   }
-  learning::TrajectoryRecorder recorder(key, episode, plan_.training_expert);
+  learning::TrajectoryRecorder recorder(key, episode, training_expert_);
   recording_.emplace(Recording{key, std::move(episode), std::move(recorder), ::ros::Time(), ""});
 }
 
@@ -80,12 +86,16 @@ const learning::TrajectoryStep* RolloutRecorder::add(const sensor_msgs::Image& i
     // A later step of an episode that was dropped.
     if (!recording_ || recording_->key.number != scene.episode) return nullptr;
     check(image, request, scene, action);
-    const core::Action taken = core::actionFromName(action.name);
+    core::Action taken = core::actionFromName(action.name);
     const learning::TrajectoryStep& step = recording_->recorder.record(recording_->episode.state(), image.data);
+    // The next scene shows whether the simulator has done the same.
+    const bool expert_drives =
+        drive_.drives(recording_->key.seed, recording_->key.number, static_cast<int>(scene.step));
+    if (expert_drives) taken = step.labelled_requests.front().label.action;
     recording_->recorder.setAction(taken);
     recording_->episode.step(taken);
     recording_->stamp = scene.header.stamp;
-    recording_->previous_action = action.name;
+    recording_->previous_action = core::actionName(taken);
     if (!recording_->episode.finished()) return &step;
     const sim::Score score = recording_->episode.score();
     learning::Trajectory& whole = finished_[recording_->key.number] = recording_->recorder.finish(score);

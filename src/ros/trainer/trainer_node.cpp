@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -52,7 +53,7 @@ TrainerNode::~TrainerNode() {
   if (round_.valid()) round_.wait();
 }
 
-void TrainerNode::goOn() { session_->trainer().finished() ? evaluate() : rollOut(); }
+void TrainerNode::goOn() { session_->trainer().finished() || session_->scoreDue() ? evaluate() : rollOut(); }
 
 void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
   const std::string bytes = session_->weights().serialize();
@@ -71,7 +72,7 @@ void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory
   publishWeights(plan.mode, plan.goal.seed);
   plan.goal.task = session_->options().task;
   plan.weights = weights_id_;
-  plan.training_expert = session_->trainingExpert();
+  plan.goal.training_expert = session_->options().training.training_expert;
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));
 }
 
@@ -82,6 +83,9 @@ void TrainerNode::rollOut() {
   plan.goal.first_episode = trainer.trajectoriesSeen();
   plan.goal.episodes = static_cast<std::uint32_t>(trainer.missingInRound());
   plan.goal.max_instances = trainer.options().max_instances;
+  plan.goal.expert_share = session_->expertDrive().share;
+  plan.goal.expert_share_per = trainer.options().expert_share_per;
+  setPairs(session_->trainingTask(), plan.goal);
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));
@@ -115,7 +119,7 @@ void TrainerNode::onRoundTimer() {
 
 void TrainerNode::evaluate() {
   const int episodes = session_->options().evaluation_episodes;
-  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task().name, learning::kHeldOutSeed);
+  evaluation_ = learning::Evaluation(session_->weightsPath(), session_->task(), learning::kHeldOutSeed);
   if (episodes == 0) {
     publishWeights("argmax", learning::kHeldOutSeed);
     return finish();
@@ -127,8 +131,15 @@ void TrainerNode::evaluate() {
   RolloutPlan plan;
   plan.goal.seed = learning::kHeldOutSeed;
   plan.goal.episodes = static_cast<std::uint32_t>(episodes);
-  play(plan, keep, [this] { finish(); });
+  play(plan, keep, [this] { scored(); });
   enterStage("evaluation");
+}
+
+void TrainerNode::scored() {
+  if (session_->trainer().finished()) return finish();
+  ROS_INFO("score: %s", evaluation_.summary().c_str());
+  session_->addScore(evaluation_);
+  goOn();
 }
 
 void TrainerNode::finish() {

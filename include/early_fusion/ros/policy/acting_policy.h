@@ -27,6 +27,12 @@ struct Decision {
   int frames = 0;                    ///< the number of frames that it used
 };
 
+/// A requested item, and how likely an action is if only this item is requested.
+struct LikelyItem {
+  std::string name;
+  float probability = 0;
+};
+
 /// A policy on a stream of images: it keeps the weights and the last frames.
 class ActingPolicy {
  public:
@@ -52,12 +58,16 @@ class ActingPolicy {
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);
 
+  /// The requested item whose own request makes `action` likeliest at the last frames: the one that the policy means.
+  /// Only after decide() with a request that is not empty. Costs one prediction for each requested item.
+  LikelyItem likeliestItem(core::Action action);
+
   /// The last frame, tinted by what the policy attends to. A kind without attention: by model::occlusionSaliency() on a
   /// grid of saliency_grid * saliency_grid cells; 0: not tinted.
   core::Image lastImageTinted(int saliency_grid);
 
  private:
-  model::Observation observation() const;
+  model::Observation observation(const core::Request& request) const;
   void remember(const core::Image& frame, std::uint64_t episode, std::uint32_t step);
 
   nn::WeightsFile file_;

@@ -6,17 +6,16 @@
 #include <early_fusion/SaveWeights.h>
 #include <early_fusion/Weights.h>
 #include <image_transport/image_transport.h>
-#include <image_transport/subscriber_filter.h>
-#include <message_filters/subscriber.h>
-#include <message_filters/sync_policies/exact_time.h>
-#include <message_filters/synchronizer.h>
 #include <ros/node_handle.h>
 
 #include <string>
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/policy/acting_policy.h"
+#include "early_fusion/ros/policy/request_pairing.h"
+#include "early_fusion/ros/shared/camera_crop.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/topic_watch.h"
 
 namespace early_fusion::nodes {
 
@@ -28,6 +27,8 @@ class PolicyNode {
     std::string weights;  ///< a weights file; empty: wait for the topic or the service
     Acting acting;        ///< how weights from a file act
     std::string image_transport = "raw";
+    std::string rectified = "auto";
+    bool name_items = false;
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
@@ -40,7 +41,14 @@ class PolicyNode {
   explicit PolicyNode(const Options& options);
 
  private:
-  void onImage(const sensor_msgs::ImageConstPtr& image, const RequestConstPtr& request);
+  void onImage(const sensor_msgs::ImageConstPtr& image);
+  void onRequest(const RequestConstPtr& request);
+  void answer(const sensor_msgs::Image& image, const Request& request);
+  /// @throws core::Error if the image or the request cannot be used.
+  Decision decide(const sensor_msgs::Image& image, const Request& request);
+  Crop cropOf(const sensor_msgs::Image& image);
+  void nameItem(core::Action action, const Request& request);
+  void expectTopics();
   void onWeights(const Weights& message);
   bool onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response);
   bool onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response);
@@ -51,16 +59,17 @@ class PolicyNode {
   void publishAnnotated(const std_msgs::Header& header, const Request& request);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
-  using SameStamp = message_filters::sync_policies::ExactTime<sensor_msgs::Image, Request>;
-
   Options options_;
   ::ros::NodeHandle node_;
   Health health_;
+  TopicWatch watch_;
   ActingPolicy policy_;
+  RequestPairing pairing_;
   std::string weights_id_;
   Action answer_;              // to the previous image
   bool answer_valid_ = false;  // whether answer_ was decided by the current weights
   sensor_msgs::CameraInfoConstPtr camera_info_;
+  std::string crop_warning_;  // of the last image
   ::ros::WallTime annotated_;
   double latency_sec_ = 0;  // of the last decision
 
@@ -72,9 +81,8 @@ class PolicyNode {
   ::ros::Subscriber weights_subscriber_;
   ::ros::ServiceServer load_server_;
   ::ros::ServiceServer save_server_;
-  image_transport::SubscriberFilter image_subscriber_;
-  message_filters::Subscriber<Request> request_subscriber_;
-  message_filters::Synchronizer<SameStamp> synchronizer_;
+  image_transport::Subscriber image_subscriber_;
+  ::ros::Subscriber request_subscriber_;
 };
 
 }  // namespace early_fusion::nodes

@@ -4,21 +4,38 @@
 #include <early_fusion/Request.h>
 #include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
+#include <geometry_msgs/Pose.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
 #include "early_fusion/core/image.h"
+#include "early_fusion/learning/expert_drive.h"
+#include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
 #include "early_fusion/world/world.h"
 
 namespace early_fusion::nodes {
 
-/// The first episode of a goal. @throws core::Error as sim::loadTask() and sim::withUpTo().
+geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
+
+/// The first episode of a goal. @throws core::Error as sim::loadTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
+
+/// Which steps of a goal's episodes the training expert drives.
+/// @throws core::Error naming the field, the value and the allowed values.
+learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal);
+
+/// The expert that labels a goal's episodes, and drives where the goal says so. @throws core::Error naming the known
+/// ones.
+learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
+
+/// Sets the requests of a goal's episodes to those of the task.
+void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
 
 /// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);

@@ -25,6 +25,15 @@ inline constexpr char kAnnotatedImageTopic[] = "camera/image_annotated";
 inline constexpr char kLoadWeightsService[] = "load_weights";
 inline constexpr char kSaveWeightsService[] = "save_weights";
 
+// Of a robot. "command" topics are those of ros_control's controllers.
+inline constexpr char kPanCommandTopic[] = "pan_position_controller/command";
+inline constexpr char kTiltCommandTopic[] = "tilt_position_controller/command";
+inline constexpr char kTrajectoryCommandTopic[] = "pan_tilt_trajectory_controller/command";
+inline constexpr char kDepthImageTopic[] = "camera/depth/image_raw";
+inline constexpr char kFoundTopic[] = "found";
+inline constexpr char kFoundMarkersTopic[] = "found_markers";
+inline constexpr char kPickAction[] = "pick";
+
 // Of the trainer.
 inline constexpr char kWeightsTopic[] = "weights";  ///< latched
 inline constexpr char kExpertTopic[] = "expert";

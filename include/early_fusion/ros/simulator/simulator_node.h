@@ -12,6 +12,8 @@
 #include <string>
 
 #include "early_fusion/core/options.h"
+#include "early_fusion/learning/expert_drive.h"
+#include "early_fusion/learning/trajectory.h"
 #include "early_fusion/ros/shared/health.h"
 #include "early_fusion/ros/simulator/step_publisher.h"
 #include "early_fusion/sim/episode.h"
@@ -21,8 +23,9 @@ namespace early_fusion::nodes {
 /// The simulated pan-tilt camera. It publishes a step, waits for the action, carries it out and publishes the next
 /// step.
 ///
-/// It plays the episodes of a RunEpisodes goal, or one episode that `reset` begins, or, with free_run, episode after
-/// episode. An episode is a function of its sim::EpisodeKey and the actions only.
+/// It plays the episodes of a RunEpisodes goal, in which the training expert may drive a share of the steps, or one
+/// episode that `reset` begins, or, with free_run, episode after episode. An episode is a function of its
+/// sim::EpisodeKey and the actions only.
 class SimulatorNode {
  public:
   struct Options {
@@ -48,9 +51,12 @@ class SimulatorNode {
     sim::EpisodeKey key;
     sim::Episode episode;
     std::string previous_action;
+    std::vector<int> pans;  // of each step so far [steps]
   };
 
   struct GoalProgress {
+    learning::ExpertDrive drive;
+    learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
     std::uint64_t end = 0;  // one past the last episode
     std::uint32_t played = 0;
     double f1_sum = 0;
@@ -68,6 +74,8 @@ class SimulatorNode {
   void freeRun();
   void publishWhenDue();
   void publishStep();
+  /// What is done when the policy has answered: its action, or the training expert's where that drives.
+  core::Action actionToTake(core::Action policys) const;
   void endEpisode();
   void continueGoal();
   void stop();

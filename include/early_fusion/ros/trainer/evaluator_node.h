@@ -18,6 +18,8 @@ class EvaluatorNode {
   struct Options {
     std::string world;
     std::string task = "simple";
+    std::string pairs = "all";
+    sim::PairSplit split;
     std::uint64_t seed = learning::kHeldOutSeed;
     int episodes = 500;
     std::string result;
@@ -35,6 +37,7 @@ class EvaluatorNode {
   void finish();
 
   Options options_;
+  sim::Task task_;
   ::ros::NodeHandle node_;
   std::shared_ptr<const world::World> world_;
   Health health_;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
 #include "early_fusion/world/world.h"
@@ -22,17 +23,17 @@ struct RolloutPlan {
   RunEpisodesGoal goal;         ///< the episodes, as in the simulator's goal
   std::string weights;          ///< the id of the weights that must act
   std::string mode = "argmax";  ///< how they must choose actions
-  learning::TrainingExpert training_expert = learning::TrainingExpert::kGreedy;
 };
 
 /// Makes labelled trajectories of the messages of episodes that other nodes play.
 ///
 /// An episode is accepted only if every step arrived, if each step follows from the previous one by the rules, and if
-/// the right weights acted and had seen the episode from its beginning. So a node that dies within an episode does not
+/// the right weights answered each step, also those that the training expert drove, and had seen the episode from its
+/// beginning. So a node that dies within an episode does not
 /// change the training data: the episode is dropped and stays missing().
 class RolloutRecorder {
  public:
-  /// `world` must outlive the recorder. @throws core::Error as firstEpisode().
+  /// `world` must outlive the recorder. @throws core::Error as firstEpisode(), expertDrive() and trainingExpert().
   RolloutRecorder(const world::World& world, const RolloutPlan& plan);
 
   /// Adds the four messages of one stamp.
@@ -59,7 +60,7 @@ class RolloutRecorder {
     sim::Episode episode;
     learning::TrajectoryRecorder recorder;
     ::ros::Time stamp;            // of the last step
-    std::string previous_action;  // recorded at the last step
+    std::string previous_action;  // taken at the last step
   };
 
   std::uint64_t end() const { return first_.number + plan_.goal.episodes; }
@@ -69,6 +70,8 @@ class RolloutRecorder {
   const world::World& world_;
   RolloutPlan plan_;
   sim::EpisodeKey first_;  // of the plan's episodes
+  learning::TrainingExpert training_expert_;
+  learning::ExpertDrive drive_;
   std::optional<Recording> recording_;
   std::map<std::uint64_t, learning::Trajectory> finished_;
   std::uint64_t next_;

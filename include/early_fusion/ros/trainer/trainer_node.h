@@ -14,7 +14,7 @@
 namespace early_fusion::nodes {
 
 /// The trainer: has episodes played, labels them with the experts, trains in rounds, publishes the weights, and scores
-/// them on held-out episodes at the end.
+/// them on held-out episodes at the end and, with score_every, on the way.
 ///
 /// It gives the same weights as the command line's `train` with the same options, bit for bit. It continues from its
 /// checkpoint when it is respawned. Training runs in its own thread, everything else in the thread that spins.
@@ -42,6 +42,7 @@ class TrainerNode {
   void train();
   void onRoundTimer();
   void evaluate();
+  void scored();
   void finish();
 
   void publishWeights(const std::string& mode, std::uint64_t seed);

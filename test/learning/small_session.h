@@ -7,7 +7,7 @@
 
 #include "early_fusion/core/file.h"
 
-namespace early_fusion::nodes {
+namespace early_fusion::learning {
 
 /// Files of a world, a task and a preset so small that a whole session takes seconds; removed with the object.
 class SmallSession {
@@ -22,11 +22,13 @@ class SmallSession {
     write("world.yaml", "objects: " + share + "/config/objects.yaml\nkitchen_urdf: " + share +
                             "/urdf/kitchen.urdf\ncamera_urdf: " + share +
                             "/urdf/pan_tilt_camera.urdf\nimage_size: " + std::to_string(kImageSize) + "\n");
-    write("short.yaml", "{instances: 3, requested: 1, steps: " + std::to_string(kSteps) + "}");
-    write("tiny.yaml", "{trajectories: " + std::to_string(kTrajectories) +
-                           ", max_instances: 5, trajectories_per_round: 2, window: 4, epochs: 1, batch_size: 8, "
-                           "learning_rate: 1e-3, image_size: " +
-                           std::to_string(kImageSize) + ", precision: f32}");
+    write("short.yaml", "{instances: 3, requested: 2, steps: " + std::to_string(kSteps) + "}");
+    write(
+        "tiny.yaml",
+        "{trajectories: " + std::to_string(kTrajectories) +
+            ", max_instances: 5, held_out_pairs: 0.5, trajectories_per_round: 2, window: 4, epochs: 1, batch_size: 8, "
+            "learning_rate: 1e-3, image_size: " +
+            std::to_string(kImageSize) + ", precision: f32}");
   }
   ~SmallSession() { std::filesystem::remove_all(folder_); }
   SmallSession(const SmallSession&) = delete;
@@ -41,7 +43,7 @@ class SmallSession {
   void write(const std::string& name, const std::string& text) { core::writeFileAtomically(path(name), text); }
 
   const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("early_fusion_ros_test" + std::to_string(::getpid()));
+      std::filesystem::temp_directory_path() / ("early_fusion_small_session" + std::to_string(::getpid()));
 };
 
-}  // namespace early_fusion::nodes
+}  // namespace early_fusion::learning

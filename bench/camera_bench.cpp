@@ -1,0 +1,169 @@
+// Time from a camera's image to the policy node's action, and the node's memory: roslaunch bench/camera_bench.launch
+#include <early_fusion/Action.h>
+#include <early_fusion/Request.h>
+#include <ros/callback_queue.h>
+#include <ros/network.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
+#include <signal.h>
+#include <unistd.h>
+#include <xmlrpcpp/XmlRpcClient.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/random.h"
+#include "early_fusion/ros/shared/topics.h"
+
+namespace early_fusion::bench {
+namespace {
+
+struct CameraBenchOptions {
+  int images = 900;
+  double rate_hz = 30;
+  int busy = 1;
+};
+
+/// Processes that do nothing but compute, until the object ends.
+class BusyProcesses {
+ public:
+  explicit BusyProcesses(int count) {
+    for (int i = 0; i < count; ++i) {
+      const pid_t child = fork();
+      if (child == 0) {
+        for (volatile double x = 1;;) x = x * 1.0000001;
+      }
+      children_.push_back(child);
+    }
+  }
+  ~BusyProcesses() {
+    for (const pid_t child : children_) kill(child, SIGKILL);
+  }
+
+ private:
+  std::vector<pid_t> children_;
+};
+
+sensor_msgs::ImagePtr bayerImage(std::uint64_t number) {
+  auto image = boost::make_shared<sensor_msgs::Image>();
+  image->width = image->step = 640;
+  image->height = 480;
+  image->encoding = "bayer_rggb8";
+  image->data.resize(640 * 480);
+  core::Random random(number);
+  for (std::uint8_t& value : image->data) value = static_cast<std::uint8_t>(random.next());
+  return image;
+}
+
+/// The process of a node, or 0 if it does not answer.
+int processOf(const std::string& node) {
+  XmlRpc::XmlRpcValue arguments, response, uri;
+  arguments[0] = arguments[1] = node;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::master::execute("lookupNode", arguments, response, uri, false)) return 0;
+  if (!ros::network::splitURI(uri, host, port)) return 0;
+  XmlRpc::XmlRpcClient client(host.c_str(), port);
+  XmlRpc::XmlRpcValue caller;
+  caller[0] = node;
+  return client.execute("getPid", caller, response) ? static_cast<int>(response[2]) : 0;
+}
+
+/// Resident memory of a process [MB].
+double residentMb(int process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
+  double total = 0, resident = 0;
+  file >> total >> resident;
+  return resident * sysconf(_SC_PAGESIZE) / 1e6;
+}
+
+/// Sends images with requests and waits for each action.
+class CameraBench {
+ public:
+  CameraBench()
+      : image_publisher_(node_.advertise<sensor_msgs::Image>(nodes::kImageTopic, 10)),
+        request_publisher_(node_.advertise<Request>(nodes::kRequestTopic, 10)),
+        action_subscriber_(node_.subscribe<Action>(
+            nodes::kActionTopic, 10, [this](const ActionConstPtr& action) { answered_ = action->header.stamp; },
+            ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay())) {}
+
+  void waitForPolicy() {
+    while (ros::ok() && (image_publisher_.getNumSubscribers() == 0 || request_publisher_.getNumSubscribers() == 0 ||
+                         action_subscriber_.getNumPublishers() == 0)) {
+      ros::WallDuration(0.1).sleep();
+    }
+  }
+
+  /// The time from the image to its action [ms].
+  double ask(std::uint32_t step) {
+    const sensor_msgs::ImagePtr image = images_[step % images_.size()];
+    image->header.stamp = ros::Time(1, step);
+    Request request;
+    request.header = image->header;
+    request.step = step;
+    request.items = {"mug"};
+    const ros::WallTime began = ros::WallTime::now();
+    image_publisher_.publish(image);
+    request_publisher_.publish(request);
+    while (ros::ok() && answered_ != image->header.stamp)
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(1));
+    return (ros::WallTime::now() - began).toSec() * 1e3;
+  }
+
+ private:
+  ros::NodeHandle node_;
+  ros::Publisher image_publisher_, request_publisher_;
+  ros::Subscriber action_subscriber_;
+  ros::Time answered_;
+  const std::vector<sensor_msgs::ImagePtr> images_ = {bayerImage(1), bayerImage(2), bayerImage(3)};
+};
+
+void run(const CameraBenchOptions& options) {
+  CameraBench bench;
+  bench.waitForPolicy();
+  for (std::uint32_t warm_up = 0; warm_up < 30; ++warm_up) bench.ask(warm_up);
+  const int process = processOf(ros::names::resolve("policy"));
+  const BusyProcesses busy(options.busy);
+  std::vector<double> times;
+  double early_mb = 0;
+  ros::WallRate rate(options.rate_hz > 0 ? options.rate_hz : 1e6);
+  for (int i = 0; i < options.images && ros::ok(); ++i) {
+    times.push_back(bench.ask(30 + i));
+    if (i == options.images / 10) early_mb = residentMb(process);
+    if (options.rate_hz > 0) rate.sleep();
+  }
+  std::sort(times.begin(), times.end());
+  std::printf(
+      "%zu Bayer images of 640 x 480 at %.0f Hz beside %d busy processes: median %.2f ms, 99 %% %.2f ms; "
+      "memory of the node %.1f MB after a tenth of them, %.1f MB at the end\n",
+      times.size(), options.rate_hz, options.busy, times[times.size() / 2], times[times.size() * 99 / 100], early_mb,
+      residentMb(process));
+}
+
+}  // namespace
+}  // namespace early_fusion::bench
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "camera_bench");
+  early_fusion::bench::CameraBenchOptions options;
+  std::vector<std::string> arguments;
+  ros::removeROSArgs(argc, argv, arguments);
+  CLI::App app("Time from a camera's image to the policy node's action, and the node's memory.");
+  app.add_option("--images", options.images, "number of images")->check(CLI::Range(10, 10000000));
+  app.add_option("--rate", options.rate_hz, "images a second; 0: each image when the last one is answered");
+  app.add_option("--busy", options.busy, "number of busy processes beside")->check(CLI::Range(0, 64));
+  std::reverse(arguments.begin() + 1, arguments.end());
+  arguments.erase(arguments.begin());
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  early_fusion::bench::run(options);
+}

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <geometry_msgs/PoseStamped.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/Image.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "early_fusion/core/options.h"
+
+namespace early_fusion::nodes {
+
+/// Where the camera looks, in a frame of the robot: by tf, met with a plane or with a depth image.
+class CameraLocator {
+ public:
+  struct Options {
+    std::string target_frame = "base_link";  ///< empty: no positions
+    std::string optical_frame;               ///< empty: the image's frame_id
+    double surface_height_m = 0.9;
+    bool use_depth = false;
+
+    core::OptionSet options();
+  };
+
+  explicit CameraLocator(const Options& options);
+
+  bool wanted() const { return !options_.target_frame.empty(); }
+
+  /// The optical frame of an image with this header.
+  std::string opticalFrame(const std::string& image_frame) const;
+
+  /// The newest pose of the optical frame in the target frame, and its stamp. Empty if there is none.
+  std::optional<std::pair<Eigen::Isometry3d, ::ros::Time>> newestPose(const std::string& image_frame) const;
+
+  /// Why no transform can be found at all; empty if there is one.
+  std::string obstacle(const std::string& image_frame) const;
+
+  /// The point that the camera sees on its optical axis at the image's stamp (see pointInView()).
+  /// @return empty with the reason in `missing` if a transform or a depth image has not come yet.
+  /// @throws core::Error if what has come gives no point.
+  std::optional<geometry_msgs::PoseStamped> locate(const std_msgs::Header& image, std::string& missing) const;
+
+ private:
+  double distance(const Eigen::Isometry3d& target_from_camera) const;
+
+  Options options_;
+  ::ros::NodeHandle node_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+  ::ros::Subscriber depth_subscriber_;
+  sensor_msgs::ImageConstPtr depth_;
+};
+
+}  // namespace early_fusion::nodes

@@ -1,0 +1,181 @@
+#include "mesh_import.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <assimp/DefaultIOSystem.h>
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
+#include "early_fusion/core/file.h"
+
+namespace early_fusion::world {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kCreaseAngleDeg = 50.f;
+constexpr std::size_t kMaxMeshBytes = std::size_t{256} << 20;
+constexpr rlim_t kMaxProcessorSec = 60;
+constexpr unsigned kMaxSec = 300;
+constexpr rlim_t kMaxMemoryBytes = rlim_t{4} << 30;
+constexpr unsigned kAfterImport = aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
+                                  aiProcess_SortByPType | aiProcess_FlipUVs | aiProcess_TransformUVCoords;
+
+/// Opens nothing but regular files of plausible size. A FIFO would wait, a device might never end.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* file) const override { return plausible(file) && DefaultIOSystem::Exists(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return plausible(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  static bool plausible(const char* file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error) && fs::file_size(file, error) <= kMaxMeshBytes && !error;
+  }
+};
+
+std::string meshName(const std::string& path, const aiMesh& mesh) {
+  return path + ": mesh '" + core::excerpt(mesh.mName.C_Str()) + "'";
+}
+
+void checkMesh(const std::string& path, const aiMesh& mesh) {
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& at = mesh.mVertices[i];
+    if (std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z)) continue;
+    throw core::Error(path + ": vertex " + std::to_string(i) + " of mesh '" + core::excerpt(mesh.mName.C_Str()) +
+                      "' is not finite");
+  }
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] < mesh.mNumVertices) continue;
+      throw core::Error(meshName(path, mesh) + ": face " + std::to_string(i) + " names vertex " +
+                        std::to_string(face.mIndices[k]) + " of " + std::to_string(mesh.mNumVertices));
+    }
+  }
+}
+
+void checkScene(const std::string& path, const aiScene& scene) {
+  if (scene.mNumMeshes == 0) throw core::Error(path + ": has no triangles; export a surface mesh");
+  bool has_surface = false;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    if (mesh.mMaterialIndex >= scene.mNumMaterials) {
+      throw core::Error(meshName(path, mesh) + " names material " + std::to_string(mesh.mMaterialIndex) + " of " +
+                        std::to_string(scene.mNumMaterials));
+    }
+    checkMesh(path, mesh);
+    for (unsigned f = 0; f < mesh.mNumFaces && !has_surface; ++f) has_surface = mesh.mFaces[f].mNumIndices > 2;
+  }
+  if (!has_surface) throw core::Error(path + ": has only points or lines, no triangles; export a surface mesh");
+}
+
+/// Reads the file, checks what assimp gives, and only then lets it compute with the indices.
+const aiScene& import(Assimp::Importer& importer, const std::string& path) {
+  importer.SetIOHandler(new RegularFiles);  // the importer owns it
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngleDeg);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  // A Collada file's coordinates are used unchanged, as in other ROS programs: z is up in the world.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const auto fail = [&] {
+    throw core::Error(path + ": cannot be read as a mesh: " + core::excerpt(importer.GetErrorString(), 200));
+  };
+  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+  if (scene == nullptr || scene->mRootNode == nullptr) fail();
+  checkScene(path, *scene);
+  scene = importer.ApplyPostProcessing(kAfterImport);
+  if (scene == nullptr || scene->mRootNode == nullptr) fail();
+  return *scene;
+}
+
+/// The bytes that the process has mapped. The limit of the child is counted from here.
+rlim_t mappedBytes() {
+  std::ifstream file("/proc/self/statm");
+  rlim_t pages = 0;
+  file >> pages;
+  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void lower(int resource, rlim_t value) {
+  rlimit limit{};
+  ::getrlimit(static_cast<__rlimit_resource>(resource), &limit);
+  limit.rlim_cur = std::min(limit.rlim_cur, value);
+  limit.rlim_max = std::max(limit.rlim_cur, std::min(limit.rlim_max, value + 5));
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+}
+
+/// Imports the file in this process, a child, and ends it.
+[[noreturn]] void tryInChild(const std::string& path) {
+  lower(RLIMIT_CORE, 0);
+  lower(RLIMIT_CPU, kMaxProcessorSec);
+  lower(RLIMIT_AS, mappedBytes() + kMaxMemoryBytes);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGXCPU, SIGALRM}) std::signal(signal, SIG_DFL);
+  ::alarm(kMaxSec);  // also ends a child that waits
+  try {
+    Assimp::Importer importer;
+    import(importer, path);
+  } catch (const std::exception&) {
+    // The parent gets the same error.
+  }
+  ::_exit(0);
+}
+
+/// @throws Error if a child process that imports the file crashes or runs out of time.
+void checkInChild(const std::string& path) {
+  const pid_t child = ::fork();
+  if (child < 0) throw core::Error(path + ": cannot start a process that reads the mesh");
+  if (child == 0) tryInChild(path);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return;  // another part of the program waits for all children: the result is unknown
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
+  throw core::Error(path + ": cannot be read as a mesh: the file is damaged, assimp " +
+                    (slow ? "does not finish it in time" : "crashes on it"));
+}
+
+/// Assimp's importer never ends for a PLY file without the end of its header.
+void checkPly(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".ply") return;
+  if (core::readFile(path, kMaxMeshBytes).find("end_header") != std::string::npos) return;
+  throw core::Error(path + ": cannot be read as a mesh: its header has no end_header");
+}
+
+}  // namespace
+
+const aiScene& importMesh(Assimp::Importer& importer, const std::string& path) {
+  std::error_code error;
+  if (fs::exists(path, error)) {
+    if (!fs::is_regular_file(path, error)) {
+      throw core::Error(path + ": cannot be read as a mesh: it is not a regular file");
+    }
+    if (fs::file_size(path, error) > kMaxMeshBytes) {
+      throw core::Error(path + ": cannot be read as a mesh: it has more than " + std::to_string(kMaxMeshBytes) +
+                        " bytes");
+    }
+    checkPly(path);
+    checkInChild(path);
+  }
+  return import(importer, path);
+}
+
+}  // namespace early_fusion::world

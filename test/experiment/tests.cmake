@@ -1,0 +1,8 @@
+early_fusion_add_test(experiment cell_commands_test)
+early_fusion_add_test(experiment cell_folder_test)
+early_fusion_add_test(experiment child_process_test)
+early_fusion_add_test(experiment experiment_runner_test)
+early_fusion_add_test(experiment experiment_test)
+early_fusion_add_test(experiment folder_lock_test)
+early_fusion_add_test(experiment grid_progress_test)
+early_fusion_add_test(experiment results_test)
