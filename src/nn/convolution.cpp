@@ -1,81 +1,24 @@
 #include "early_fusion/nn/convolution.h"
 
-#include <omp.h>
-
-#include <algorithm>
+#include <cstdlib>
 #include <dnnl.hpp>
+#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
+#include "convolution_backend.h"
 #include "early_fusion/core/error.h"
-#include "early_fusion/nn/aligned_buffer.h"
 
 namespace early_fusion::nn {
 
 namespace {
 
-using Tag = dnnl::memory::format_tag;
-using Type = dnnl::memory::data_type;
-
-dnnl::engine& cpu() {
-  static dnnl::engine engine(dnnl::engine::kind::cpu, 0);
-  return engine;
-}
-
-template <class T>
-Type elementType();
-template <>
-Type elementType<float>() {
-  return Type::f32;
-}
-template <>
-Type elementType<bfloat16>() {
-  return Type::bf16;
-}
-
-/// oneDNN divides a primitive's work for the number of threads that is set when the primitive is created.
-class ScopedThreadCount {
- public:
-  explicit ScopedThreadCount(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
-  ~ScopedThreadCount() { omp_set_num_threads(before_); }
-  ScopedThreadCount(const ScopedThreadCount&) = delete;
-  ScopedThreadCount& operator=(const ScopedThreadCount&) = delete;
-
- private:
-  int before_;
-};
-
-/// A primitive that is bound to memory. Changing an address and running it allocates nothing.
-class Call {
- public:
-  Call() = default;
-  Call(dnnl::primitive primitive, std::vector<std::pair<int, dnnl::memory>> memories)
-      : primitive_(std::move(primitive)), stream_(cpu()), memories_(std::move(memories)) {
-    for (const auto& [argument, memory] : memories_) arguments_.push_back({argument, memory.get()});
-  }
-
-  void setAddress(int index, const void* data) { memories_[index].second.set_data_handle(const_cast<void*>(data)); }
-
-  void run() {
-    dnnl::error::wrap_c_api(
-        dnnl_primitive_execute(primitive_.get(), stream_.get(), static_cast<int>(arguments_.size()), arguments_.data()),
-        "could not run a convolution");
-  }
-
- private:
-  dnnl::primitive primitive_;
-  dnnl::stream stream_;
-  std::vector<std::pair<int, dnnl::memory>> memories_;
-  std::vector<dnnl_exec_arg_t> arguments_;
-};
-
-// With fewer channels, oneDNN's direct kernels are as fast as Winograd's.
-constexpr int kFewestWinogradChannels = 64;
-
-bool processorHas(dnnl::cpu_isa isa) {
+bool processorHas([[maybe_unused]] dnnl::cpu_isa isa) {
+#if defined(__x86_64__)
   const int wanted = static_cast<int>(isa);
   return (static_cast<int>(dnnl::get_effective_cpu_isa()) & wanted) == wanted;
+#else
+  return false;  // the names of other processors' instruction sets would be needed
+#endif
 }
 
 bool processorIsAmds() {
@@ -86,17 +29,16 @@ bool processorIsAmds() {
 #endif
 }
 
-bool suitsWinograd(const ConvolutionShape& shape) {
-  return std::min(shape.in_channels, shape.out_channels) >= kFewestWinogradChannels &&
-         shape.in_channels % kLanes == 0 && shape.out_channels % kLanes == 0;
-}
-
-dnnl::memory unbound(const dnnl::memory::desc& description) { return {description, cpu(), DNNL_MEMORY_NONE}; }
-
-void reorder(dnnl::memory from, dnnl::memory to) {
-  dnnl::stream stream(cpu());
-  dnnl::reorder(from, to).execute(stream, from, to);
-  stream.wait();
+template <class T>
+std::unique_ptr<ConvolutionBackend<T>> makeBackend(const ConvolutionShape& shape, bool input_gradient, int threads) {
+  const ConvolutionLibrary library = convolutionLibrary();
+  if constexpr (std::is_same_v<T, float>) {
+    if (library == ConvolutionLibrary::kEigen) return makeEigenConvolution(shape, threads);
+    auto backend = makeOneDnnConvolution<T>(shape, input_gradient, threads, library == ConvolutionLibrary::kOneDnn);
+    return backend ? std::move(backend) : makeEigenConvolution(shape, threads);
+  } else {
+    return makeOneDnnConvolution<T>(shape, input_gradient, threads, true);
+  }
 }
 
 }  // namespace
@@ -107,151 +49,19 @@ bool processorPrefersBfloat16() {
   return processorHas(dnnl::cpu_isa::avx512_core_amx) || (processorHasBfloat16() && processorIsAmds());
 }
 
-template <class T>
-class Convolution<T>::Implementation {
- public:
-  Implementation(const ConvolutionShape& shape, bool input_gradient, int threads) : shape_(shape) {
-    const int c_in = shape.in_channels, c_out = shape.out_channels;
-    x_ = {{1, c_in, shape.height, shape.width}, elementType<T>(), Tag::nhwc};
-    y_ = {{1, c_out, shape.height, shape.width}, elementType<T>(), Tag::nhwc};
-    weights_ = {{c_out, c_in, 3, 3}, elementType<T>(), Tag::any};
-    oihw_ = {{c_out, c_in, 3, 3}, Type::f32, Tag::oihw};
-    attributes_.set_scratchpad_mode(dnnl::scratchpad_mode::user);
-    {
-      const ScopedThreadCount one(1);
-      const auto hint = direct();
-      addForward(hint, threads, forward_, forward_weights_);
-      addBackwardWeights(hint, threads);
-      if (input_gradient) addBackwardInput(hint, threads);
-    }
-    addPrediction(threads);
-  }
-
-  void setWeights(const float* oihw) {
-    const dnnl::memory source(oihw_, cpu(), const_cast<float*>(oihw));
-    reorder(source, forward_weights_);
-    if (!predict_.empty()) reorder(source, predict_weights_);
-    if (!wide_predict_.empty()) reorder(source, wide_weights_);
-    if (!backward_input_.empty()) reorder(source, backward_weights_);
-  }
-
-  void forward(int thread, const T* x, T* y) { run(forward_[thread], x, y); }
-  void predict(int thread, const T* x, T* y) { run((predict_.empty() ? forward_ : predict_)[thread], x, y); }
-  void predictOnAllThreads(const T* x, T* y) { wide_predict_.empty() ? predict(0, x, y) : run(wide_predict_[0], x, y); }
-  MapLayout predictionLayout() const { return predict_.empty() ? MapLayout::kChannelsLast : MapLayout::kBlocked; }
-  void backwardInput(int thread, const T* dy, T* dx) { run(backward_input_[thread], dy, dx); }
-
-  void backwardWeights(int thread, const T* x, const T* dy, float* dweights) {
-    Call& call = weights_gradient_[thread];
-    call.setAddress(2, dweights);
-    run(call, x, dy);
-  }
-
-  void weightsGradient(float* dweights, float* oihw) {
-    reorder(dnnl::memory(dweights_, cpu(), dweights), dnnl::memory(oihw_, cpu(), oihw));
-  }
-
-  std::size_t weightsGradientSize() const { return dweights_.get_size() / sizeof(float); }
-
- private:
-  static void run(Call& call, const void* first, const void* second) {
-    call.setAddress(0, first);
-    call.setAddress(1, second);
-    call.run();
-  }
-
-  dnnl::memory scratchpad(const dnnl::memory::desc& description) {
-    scratch_.emplace_back(description.get_size() + 1);
-    return {description, cpu(), scratch_.back().data()};
-  }
-
-  using Forward = dnnl::convolution_forward::primitive_desc;
-
-  Forward direct() const { return choose(dnnl::algorithm::convolution_direct, Tag::nhwc, false); }
-
-  /// Empty if oneDNN has no kernel for this processor.
-  Forward winograd() const {
-    static_assert(kLanes == 16);
-    return choose(dnnl::algorithm::convolution_winograd, Tag::nChw16c, true);
-  }
-
-  Forward choose(dnnl::algorithm algorithm, Tag layout, bool allow_empty) const {
-    const dnnl::memory::desc x(x_.dims(), elementType<T>(), layout), y(y_.dims(), elementType<T>(), layout);
-    const dnnl::convolution_forward::desc operation(dnnl::prop_kind::forward_training, algorithm, x, weights_, y,
-                                                    {1, 1}, {1, 1}, {1, 1});
-    return {operation, attributes_, cpu(), allow_empty};
-  }
-
-  void addPrediction(int threads) {
-    if (std::is_same_v<T, float> && suitsWinograd(shape_)) {
-      const ScopedThreadCount one(1);
-      const Forward chosen = winograd();
-      if (chosen) addForward(chosen, threads, predict_, predict_weights_);
-    }
-    const ScopedThreadCount all(threads);
-    if (threads > 1) addForward(predict_.empty() ? direct() : winograd(), 1, wide_predict_, wide_weights_);
-  }
-
-  void addForward(const Forward& chosen, int count, std::vector<Call>& calls, dnnl::memory& weights) {
-    const dnnl::convolution_forward primitive(chosen);
-    weights = dnnl::memory(chosen.weights_desc(), cpu());
-    for (int i = 0; i < count; ++i) {
-      calls.push_back({primitive,
-                       {{DNNL_ARG_SRC, unbound(chosen.src_desc())},
-                        {DNNL_ARG_DST, unbound(chosen.dst_desc())},
-                        {DNNL_ARG_WEIGHTS, weights},
-                        {DNNL_ARG_SCRATCHPAD, scratchpad(chosen.scratchpad_desc())}}});
-    }
-  }
-
-  void addBackwardWeights(const dnnl::convolution_forward::primitive_desc& hint, int count) {
-    const dnnl::memory::desc gradient(oihw_.dims(), Type::f32, Tag::any);
-    const dnnl::convolution_backward_weights::desc operation(dnnl::algorithm::convolution_direct, x_, gradient, y_,
-                                                             {1, 1}, {1, 1}, {1, 1});
-    const dnnl::convolution_backward_weights::primitive_desc chosen(operation, attributes_, cpu(), hint);
-    const dnnl::convolution_backward_weights primitive(chosen);
-    dweights_ = chosen.diff_weights_desc();
-    for (int i = 0; i < count; ++i) {
-      weights_gradient_.push_back({primitive,
-                                   {{DNNL_ARG_SRC, unbound(x_)},
-                                    {DNNL_ARG_DIFF_DST, unbound(y_)},
-                                    {DNNL_ARG_DIFF_WEIGHTS, unbound(dweights_)},
-                                    {DNNL_ARG_SCRATCHPAD, scratchpad(chosen.scratchpad_desc())}}});
-    }
-  }
-
-  void addBackwardInput(const dnnl::convolution_forward::primitive_desc& hint, int count) {
-    const dnnl::convolution_backward_data::desc operation(dnnl::algorithm::convolution_direct, x_, weights_, y_, {1, 1},
-                                                          {1, 1}, {1, 1});
-    const dnnl::convolution_backward_data::primitive_desc chosen(operation, attributes_, cpu(), hint);
-    const dnnl::convolution_backward_data primitive(chosen);
-    backward_weights_ = dnnl::memory(chosen.weights_desc(), cpu());
-    for (int i = 0; i < count; ++i) {
-      backward_input_.push_back({primitive,
-                                 {{DNNL_ARG_DIFF_DST, unbound(y_)},
-                                  {DNNL_ARG_DIFF_SRC, unbound(x_)},
-                                  {DNNL_ARG_WEIGHTS, backward_weights_},
-                                  {DNNL_ARG_SCRATCHPAD, scratchpad(chosen.scratchpad_desc())}}});
-    }
-  }
-
-  ConvolutionShape shape_;
-  dnnl::memory::desc x_, y_, weights_, oihw_, dweights_;
-  dnnl::primitive_attr attributes_;
-  dnnl::memory forward_weights_, predict_weights_, wide_weights_, backward_weights_;
-  std::vector<AlignedBuffer<std::uint8_t>> scratch_;
-  // predict_ is empty if prediction uses forward_. wide_predict_ is empty if there is one thread.
-  std::vector<Call> forward_, predict_, wide_predict_, weights_gradient_, backward_input_;
-};
-
-template <class T>
-Convolution<T>::Convolution(const ConvolutionShape& shape, bool input_gradient, int threads) try
-    : implementation_(std::make_unique<Implementation>(shape, input_gradient, threads)) {
-} catch (const dnnl::error& error) {
-  const std::string type = std::is_same_v<T, float> ? "f32" : "bf16";
-  throw core::Error("this processor cannot compute convolutions in " + type + ": " + error.what() +
-                    (type == "bf16" ? "; use precision f32" : ""));
+ConvolutionLibrary convolutionLibrary() {
+  const char* value = std::getenv("EARLY_FUSION_CONVOLUTIONS");
+  const std::string name = value == nullptr ? "" : value;
+  if (name.empty() || name == "auto") return ConvolutionLibrary::kAuto;
+  if (name == "onednn") return ConvolutionLibrary::kOneDnn;
+  if (name == "eigen") return ConvolutionLibrary::kEigen;
+  throw core::Error("environment variable EARLY_FUSION_CONVOLUTIONS: '" + name.substr(0, 40) +
+                    "' is not known; use auto, onednn or eigen");
 }
+
+template <class T>
+Convolution<T>::Convolution(const ConvolutionShape& shape, bool input_gradient, int threads)
+    : backend_(makeBackend<T>(shape, input_gradient, threads)) {}
 
 template <class T>
 Convolution<T>::~Convolution() = default;
@@ -260,47 +70,47 @@ Convolution<T>::Convolution(Convolution&&) noexcept = default;
 
 template <class T>
 void Convolution<T>::setWeights(const float* oihw) {
-  implementation_->setWeights(oihw);
+  backend_->setWeights(oihw);
 }
 
 template <class T>
 void Convolution<T>::forward(int thread, const T* x, T* y) {
-  implementation_->forward(thread, x, y);
+  backend_->forward(thread, x, y);
 }
 
 template <class T>
 void Convolution<T>::predict(int thread, const T* x, T* y) {
-  implementation_->predict(thread, x, y);
+  backend_->predict(thread, x, y);
 }
 
 template <class T>
 MapLayout Convolution<T>::predictionLayout() const {
-  return implementation_->predictionLayout();
+  return backend_->predictionLayout();
 }
 
 template <class T>
 void Convolution<T>::predictOnAllThreads(const T* x, T* y) {
-  implementation_->predictOnAllThreads(x, y);
+  backend_->predictOnAllThreads(x, y);
 }
 
 template <class T>
 void Convolution<T>::backwardWeights(int thread, const T* x, const T* dy, float* dweights) {
-  implementation_->backwardWeights(thread, x, dy, dweights);
+  backend_->backwardWeights(thread, x, dy, dweights);
 }
 
 template <class T>
 std::size_t Convolution<T>::weightsGradientSize() const {
-  return implementation_->weightsGradientSize();
+  return backend_->weightsGradientSize();
 }
 
 template <class T>
 void Convolution<T>::weightsGradient(float* dweights, float* oihw) {
-  implementation_->weightsGradient(dweights, oihw);
+  backend_->weightsGradient(dweights, oihw);
 }
 
 template <class T>
 void Convolution<T>::backwardInput(int thread, const T* dy, T* dx) {
-  implementation_->backwardInput(thread, dy, dx);
+  backend_->backwardInput(thread, dy, dx);
 }
 
 template class Convolution<float>;

@@ -24,3 +24,8 @@ foreach(name libtorch_golden_test libtorch_parity_test)
     early_fusion_skip_test(model_${name} "libtorch was not found when the build was configured (Debian: libtorch-dev)")
   endif()
 endforeach()
+
+foreach(name attention_map_test early_fusion_test golden_parity_test late_fusion_test network_policy_test
+    libtorch_parity_test vision_trunk_test)
+  early_fusion_add_eigen_test(model_${name})
+endforeach()

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
+
+#include "early_fusion/core/error.h"
 
 #include "reference_layers.h"
 
@@ -66,8 +69,62 @@ class ConvolutionTest : public testing::TestWithParam<std::array<int, 4>> {
 
 TEST(Processor, PrefersBfloat16OnlyWhereItHasIt) { EXPECT_TRUE(processorHasBfloat16() || !processorPrefersBfloat16()); }
 
+class ConvolutionLibraryTest : public testing::Test {
+ protected:
+  static constexpr char kVariable[] = "EARLY_FUSION_CONVOLUTIONS";
+  ConvolutionLibraryTest() {
+    if (const char* value = std::getenv(kVariable)) before = value;
+  }
+  ~ConvolutionLibraryTest() override { setenv(kVariable, before.c_str(), 1); }
+
+  std::string before;
+};
+
+TEST_F(ConvolutionLibraryTest, IsWhatTheEnvironmentNames) {
+  unsetenv(kVariable);
+  EXPECT_EQ(convolutionLibrary(), ConvolutionLibrary::kAuto);
+  setenv(kVariable, "onednn", 1);
+  EXPECT_EQ(convolutionLibrary(), ConvolutionLibrary::kOneDnn);
+  setenv(kVariable, "eigen", 1);
+  EXPECT_EQ(convolutionLibrary(), ConvolutionLibrary::kEigen);
+}
+
+TEST_F(ConvolutionLibraryTest, RefusesAnotherName) {
+  setenv(kVariable, "xnnpack", 1);
+  try {
+    Convolution<float>({16, 16, 4, 4}, false, 1);
+    FAIL() << "no error";
+  } catch (const core::Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "environment variable EARLY_FUSION_CONVOLUTIONS: 'xnnpack' is not known; use auto, onednn or eigen");
+  }
+}
+
+TEST_F(ConvolutionLibraryTest, DiffersByRoundingOnly) {
+  const ConvolutionShape shape{9, 16, 24, 40};
+  core::Random random(5);
+  const Numbers x = randomNumbers(std::size_t(9) * 24 * 40, random),
+                dy = randomNumbers(std::size_t(16) * 24 * 40, random);
+  const Numbers weights = randomNumbers(std::size_t(9) * 16 * 9, random);
+  const auto results = [&](const char* library) {
+    setenv(kVariable, library, 1);
+    Convolution<float> convolution(shape, true, 1);
+    const auto stored = [](const Numbers& numbers) { return std::vector<float>(numbers.begin(), numbers.end()); };
+    convolution.setWeights(stored(weights).data());
+    std::vector<float> dx(x.size()), dw(convolution.weightsGradientSize()), oihw(weights.size());
+    convolution.backwardInput(0, stored(dy).data(), dx.data());
+    convolution.backwardWeights(0, stored(x).data(), stored(dy).data(), dw.data());
+    convolution.weightsGradient(dw.data(), oihw.data());
+    return std::pair(Numbers(dx.begin(), dx.end()), Numbers(oihw.begin(), oihw.end()));
+  };
+  const auto onednn = results("onednn"), eigen = results("eigen");
+  EXPECT_LT(worstError(eigen.first, onednn.first), 1e-5);
+  EXPECT_LT(worstError(eigen.second, onednn.second), 1e-5);
+}
+
 TEST_P(ConvolutionTest, PredictsByWinogradWhereThereAreManyChannels) {
   if (!processorHasBfloat16()) GTEST_SKIP() << "this processor may lack the kernels";
+  if (convolutionLibrary() == ConvolutionLibrary::kEigen) GTEST_SKIP() << "Eigen multiplies directly";
   const bool many = std::min(shape.in_channels, shape.out_channels) >= 64;
   EXPECT_EQ(Convolution<float>(shape, false, 1).predictionLayout() == MapLayout::kBlocked, many);
   EXPECT_EQ(Convolution<bfloat16>(shape, false, 1).predictionLayout(), MapLayout::kChannelsLast);

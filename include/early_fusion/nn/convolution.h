@@ -7,6 +7,9 @@
 
 namespace early_fusion::nn {
 
+template <class T>
+class ConvolutionBackend;
+
 struct ConvolutionShape {
   int in_channels;
   int out_channels;
@@ -20,6 +23,17 @@ bool processorHasBfloat16();
 /// Whether it also computes faster in bfloat16 than in f32: with Intel's AMX or AMD's AVX-512. Intel's AVX-512 alone
 /// multiplies both at the same rate, so bfloat16 only adds conversions where a virtual machine hides AMX.
 bool processorPrefersBfloat16();
+
+/// Who computes convolutions.
+enum class ConvolutionLibrary {
+  kAuto,    ///< oneDNN; in f32 Eigen if oneDNN has only reference kernels for the processor, as on Arm
+  kOneDnn,  ///< oneDNN, also with reference kernels
+  kEigen,   ///< Eigen in f32, oneDNN in bf16
+};
+
+/// The library that the environment variable EARLY_FUSION_CONVOLUTIONS names: auto (the default), onednn or eigen.
+/// Their results differ by rounding. @throws Error for another value.
+ConvolutionLibrary convolutionLibrary();
 
 /// A 3x3 convolution of one image with stride 1, one pixel of zero padding and no bias. Maps are (H,W,C), except those
 /// of predict().
@@ -51,8 +65,8 @@ class Convolution {
   /// predict() with all threads on one image; the same bits. Must not be called by several threads at the same time.
   void predictOnAllThreads(const T* x, T* y);
 
-  /// Computes dweights from x (H,W,in) and dy (H,W,out): weightsGradientSize() numbers in a layout that oneDNN chooses.
-  /// Gradients in this layout may be added. weightsGradient() converts them to OIHW.
+  /// Computes dweights from x (H,W,in) and dy (H,W,out): weightsGradientSize() numbers in a layout that the library
+  /// chooses. Gradients in this layout may be added. weightsGradient() converts them to OIHW.
   void backwardWeights(int thread, const T* x, const T* dy, float* dweights);
   std::size_t weightsGradientSize() const;
   void weightsGradient(float* dweights, float* oihw);
@@ -61,8 +75,7 @@ class Convolution {
   void backwardInput(int thread, const T* dy, T* dx);
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<ConvolutionBackend<T>> backend_;
 };
 
 }  // namespace early_fusion::nn
