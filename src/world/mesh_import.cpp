@@ -92,7 +92,11 @@ const aiScene& import(Assimp::Importer& importer, const std::string& path) {
   // A Collada file's coordinates are used unchanged, as in other ROS programs: z is up in the world.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const auto fail = [&] {
-    throw core::Error(path + ": cannot be read as a mesh: " + core::excerpt(importer.GetErrorString(), 200));
+    const std::string reason = importer.GetErrorString();
+    if (reason.find("mNumMeshes is 0") != std::string::npos) {
+      throw core::Error(path + ": has no triangles; export a surface mesh");
+    }
+    throw core::Error(path + ": cannot be read as a mesh: " + core::excerpt(reason, 200));
   };
   const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr) fail();

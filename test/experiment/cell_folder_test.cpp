@@ -7,7 +7,7 @@
 namespace early_fusion::experiment {
 namespace {
 
-const std::string kThen = "then: {hard: 'evaluate --policy {cell}/weights.safetensors', more: retention {cell}}\n";
+const std::string kThen = "then: {hard: 'evaluate --policy {cell}/weights.safetensors', more: 'retention {cell}'}\n";
 
 TEST(CellFolder, WhatRemainsIsTrainingAndThenEachCommandWithoutScores) {
   const SmallExperiment small(kThen);
@@ -36,7 +36,7 @@ TEST(CellFolder, WritesItsCommandsForAnyFolder) {
   const SmallExperiment small(kThen);
   small.folders()[0].writeCommands();
   EXPECT_EQ(small.files.read("run/early_fusion-seed_1/command"),
-            "early_fusion train --trajectories 100 --kind early_fusion --seed 1 --resume --output {cell}\n"
+            "early_fusion train --seed 1 --kind early_fusion --trajectories 100 --resume --output {cell}\n"
             "early_fusion evaluate --policy {cell}/weights.safetensors\n"
             "early_fusion retention {cell}\n");
 }

@@ -47,10 +47,10 @@ TEST_F(ExperimentRunner, RunsEveryCellOnceAndThenNoneAgain) {
   const std::string script = "echo $@ >>" + small_.files.path("calls") + "\necho {} >$folder/result.json\n";
   EXPECT_TRUE(run(script).failures.empty());
   EXPECT_EQ(small_.files.read("calls"),
-            "train --trajectories 100 --kind early_fusion --seed 1 --resume --output " + small_.output() +
-                "/early_fusion-seed_1\ntrain --trajectories 100 --kind early_fusion --seed 2 --resume --output " +
+            "train --seed 1 --kind early_fusion --trajectories 100 --resume --output " + small_.output() +
+                "/early_fusion-seed_1\ntrain --seed 2 --kind early_fusion --trajectories 100 --resume --output " +
                 small_.output() +
-                "/early_fusion-seed_2\ntrain --trajectories 100 --kind late_fusion --resume --output " +
+                "/early_fusion-seed_2\ntrain --kind late_fusion --trajectories 100 --resume --output " +
                 small_.output() + "/late_fusion\n");
   EXPECT_TRUE(said("finished late_fusion"));
   EXPECT_TRUE(run("exit 1").failures.empty());
@@ -80,7 +80,7 @@ TEST_F(ExperimentRunner, ACommandThatLeavesNoScoresHasFailed) {
 }
 
 TEST_F(ExperimentRunner, CommandsOnFinishedCellsFollowTheirTraining) {
-  const SmallExperiment small("then: {hard: evaluate {cell}, more: retention {cell}}\n");
+  const SmallExperiment small("then: {hard: 'evaluate {cell}', more: 'retention {cell}'}\n");
   const std::string script =
       "echo $1 >>$folder/calls\ncase $1 in\n" +
       std::string("train) echo {} >$folder/result.json;;\nevaluate) echo {} >$folder/hard.json;;\n") +

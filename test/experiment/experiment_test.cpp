@@ -65,7 +65,7 @@ TEST_F(ExperimentTest, ABlockIsTheCrossProductOfItsListsAndTheFirstListVariesSlo
 
 TEST_F(ExperimentTest, TheGridWinsOverTheCommonOptionsAndTheseOverThePreset) {
   const Experiment experiment =
-      load("{question: Which?, options: {preset: paper, window: 70, batch_size: 4}, grid: [{batch_size: [2, 3]}]}");
+      load("{question: 'Which?', options: {preset: paper, window: 70, batch_size: 4}, grid: [{batch_size: [2, 3]}]}");
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(experiment.cells[i].session.training.batch_size, 2 + i);
     EXPECT_EQ(experiment.cells[i].session.training.window, 70);
@@ -77,7 +77,7 @@ TEST_F(ExperimentTest, TheGridWinsOverTheCommonOptionsAndTheseOverThePreset) {
 
 TEST_F(ExperimentTest, PathsAreRelativeToTheFile) {
   folder_.write("tasks/short.yaml", "{instances: 2, requested: 1, steps: 3}");
-  const Experiment experiment = load("{question: Which?, grid: [{task: [tasks/short.yaml, simple]}]}");
+  const Experiment experiment = load("{question: 'Which?', grid: [{task: [tasks/short.yaml, simple]}]}");
   EXPECT_EQ(experiment.cells[0].session.task, folder_.path("tasks/short.yaml"));
   EXPECT_EQ(names(experiment), (std::vector<std::string>{"short", "simple"}));
   EXPECT_EQ(experiment.cells[0].values, std::vector<std::string>{"short"});

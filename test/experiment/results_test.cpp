@@ -36,8 +36,8 @@ TEST(Results, ARowForEveryScoringOfEveryCell) {
             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n"
             "| early_fusion | task | 1 | 100 | 3.0 | 0.900 | 0.800 | 0.700 | 0.600 |\n"
             "| early_fusion | hard | 1 | 100 | 3.0 | 0.500 | 0.250 | 0.125 | 1.000 |\n"
-            "| early_fusion | retention/other | 1 | 20 |  | 0.375 |  |  |  |\n"
-            "| early_fusion | retention/same | 1 | 20 |  | 0.750 |  |  |  |\n");
+            "| early_fusion | retention/same | 1 | 20 |  | 0.750 |  |  |  |\n"
+            "| early_fusion | retention/other | 1 | 20 |  | 0.375 |  |  |  |\n");
 }
 
 TEST(Results, TheTableHasTheMeanOverSeedsAndItsSpread) {

@@ -107,8 +107,8 @@ TEST(NetworkPolicy, InBfloat16PredictsAndLearnsAlmostTheSame) {
     EXPECT_NEAR(full->lossAndGradients(batch.samples, 0), half->lossAndGradients(batch.samples, 0), 0.02);
     const Eigen::VectorXf& a = full->parameters().gradients();
     const Eigen::VectorXf& b = half->parameters().gradients();
-    EXPECT_GT(a.dot(b), 0.95f * a.norm() * b.norm());
-    EXPECT_NEAR(b.norm() / a.norm(), 1, 0.1);
+    EXPECT_GT(a.dot(b), 0.9f * a.norm() * b.norm());
+    EXPECT_NEAR(b.norm() / a.norm(), 1, 0.15);
   }
 }
 

@@ -32,7 +32,7 @@ std::ostream& operator<<(std::ostream& stream, const Case& c) { return stream <<
 class NodeParameters : public testing::TestWithParam<Case> {};
 
 TEST_P(NodeParameters, AMistakeIsNamedAndTheNodeEnds) {
-  const SmallSession files;
+  const learning::SmallSession files;
   std::vector<std::string> command = {std::string(EARLY_FUSION_NODES) + "/" + GetParam().node};
   for (const std::string& argument : GetParam().arguments) command.push_back(argument);
   // A node of a name of its own: the master keeps parameters.
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
   ::ros::init(::ros::M_string(), "node_parameters");
-  const SmallSession files;
+  const learning::SmallSession files;
   for (const bool in_session : {false, true}) {
     ::ros::param::set(kFailureParameter, "");
     ChildProcess::Environment environment;
@@ -87,7 +87,7 @@ TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {
 TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
   ::ros::init(::ros::M_string(), "node_parameters");
   ::ros::param::set("/plugged/compressed/mode", "any");
-  const SmallSession files;
+  const learning::SmallSession files;
   ChildProcess node({std::string(EARLY_FUSION_NODES) + "/request_node", "__name:=plugged"}, {}, files.path("log"));
   const auto is_up = [] {
     ::ros::master::V_TopicInfo topics;
@@ -100,7 +100,7 @@ TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
 
 TEST(NodeStart, SaysThatSimulatedTimeStandsStill) {
   ::ros::init(::ros::M_string(), "node_parameters");
-  const SmallSession files;
+  const learning::SmallSession files;
   ::ros::param::set("/use_sim_time", true);
   ChildProcess node({std::string(EARLY_FUSION_NODES) + "/pan_tilt_driver_node", "__name:=timeless"}, {},
                     files.path("log"));
@@ -113,7 +113,7 @@ TEST(NodeStart, SaysThatSimulatedTimeStandsStill) {
 /// Checks the --help of the program `name` against the options that its node has.
 template <class Node>
 void expectHelp(const std::string& name) {
-  const SmallSession files;
+  const learning::SmallSession files;
   ChildProcess program({std::string(EARLY_FUSION_NODES) + "/" + name, "--help"}, {}, files.path("log"));
   ASSERT_TRUE(program.ends(20)) << name;
   EXPECT_EQ(program.exitCode(), 0) << name;

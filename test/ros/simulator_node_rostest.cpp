@@ -254,7 +254,7 @@ TEST_F(SimulatorNodeTest, TheExpertDrivesTheStepsThatAGoalGivesIt) {
   for (std::uint64_t number : {30, 31}) {
     sim::Episode episode(*world_, {sim::loadTask(files_.task()), 9, number});
     std::vector<int> pans;
-    for (int step = 0; step < SmallSession::kSteps; ++step) {
+    for (int step = 0; step < learning::SmallSession::kSteps; ++step) {
       ASSERT_TRUE(awaitStep(number, step)) << number << " " << step;
       const sim::EpisodeState& state = episode.state();
       EXPECT_EQ(scenes_.back()->pan, state.orientation.pan);
@@ -272,7 +272,7 @@ TEST_F(SimulatorNodeTest, TheExpertDrivesTheStepsThatAGoalGivesIt) {
   }
   ASSERT_TRUE(spinUntil([&] { return client.getState().isDone(); }));
   EXPECT_GT(driven, 0);
-  EXPECT_LT(driven, 2 * SmallSession::kSteps);
+  EXPECT_LT(driven, 2 * learning::SmallSession::kSteps);
 }
 
 TEST_F(SimulatorNodeTest, AGoalThatCannotBePlayedIsAbortedWithTheReason) {

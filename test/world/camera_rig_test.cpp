@@ -124,7 +124,7 @@ TEST(CameraRig, RefusesLoopsOfLinks) {
 }
 
 TEST(CameraRig, RefusesTextsThatAreNoUrdfYet) {
-  EXPECT_NE(errorOfRig("<link name=\"world\"/>", "<xacro:property name='a' value='1'/>").find("expand it first: xacro"),
+  EXPECT_NE(errorOfRig("<link name=\"world\"/>", "<xacro:property name='a' value='1'/>").find("run xacro first"),
             std::string::npos);
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "<a>";

@@ -172,7 +172,7 @@ TEST_F(TexturedMeshTest, ErrorsNameThePathAndTheFault) {
   EXPECT_NE(errorOf(garbage).find(garbage + ": has no triangles"), std::string::npos) << errorOf(garbage);
 
   const std::string points = write("points.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
-  EXPECT_NE(errorOf(points).find(points + ": cannot be read as a mesh"), std::string::npos) << errorOf(points);
+  EXPECT_NE(errorOf(points).find(points + ": has only points or lines"), std::string::npos) << errorOf(points);
 
   const std::string square = write("square.obj", kSquare);
   write("square.mtl", "newmtl cloth\nmap_Kd nowhere.png\n");
@@ -247,7 +247,7 @@ source="#p"/></vertices><triangles material="s" count="1"><input semantic="VERTE
        {std::pair<std::string, std::string>("m.ply", pyramidPly("3 0 2 1")), {"m.obj", kSquare}, {"m.dae", collada}}) {
     EXPECT_EQ(errorOf(write(name, good)).find("crashes"), std::string::npos);
     int refused = 0;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 30; ++i) {
       std::string text = good;
       const int size = static_cast<int>(text.size());
       if (i % 3 == 0) text.resize(random.below(size));
