@@ -36,9 +36,9 @@ TEST(CellFolder, WritesItsCommandsForAnyFolder) {
   const SmallExperiment small(kThen);
   small.folders()[0].writeCommands();
   EXPECT_EQ(small.files.read("run/early_fusion-seed_1/command"),
-            "early_fusion train --seed 1 --kind early_fusion --trajectories 100 --resume --output {cell}\n"
-            "early_fusion evaluate --policy {cell}/weights.safetensors\n"
-            "early_fusion retention {cell}\n");
+            "early_fusion train --seed 1 --kind early_fusion --trajectories 100 --resume --output '{cell}'\n"
+            "early_fusion evaluate --policy '{cell}/weights.safetensors'\n"
+            "early_fusion retention '{cell}'\n");
 }
 
 TEST(CellFolder, ACellOfOtherOptionsIsAnError) {

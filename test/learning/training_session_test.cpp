@@ -108,9 +108,11 @@ TEST_F(TrainingSessionTest, StartsFromGivenWeightsAndAlsoResumesBitForBit) {
   }
   SessionOptions again = from("parts", weights);
   again.resume = true;
-  TrainingSession resumed(again, world());
-  runSession(resumed, [](const Progress&) {});
-  EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+  {
+    TrainingSession resumed(again, world());
+    runSession(resumed, [](const Progress&) {});
+    EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+  }
   EXPECT_FALSE(core::readFile(whole.weightsPath()) == core::readFile(weights));
   again.from.clear();
   EXPECT_NE(errorOf(again).find("the session was started with from = "), std::string::npos) << errorOf(again);
