@@ -3,6 +3,7 @@
 
 #include "early_fusion/model/policy_kinds.h"
 #include "early_fusion/nn/adam.h"
+#include "golden_values.h"
 #include "parity_case.h"
 #include "torch_network.h"
 #include "torch_parameters.h"
@@ -58,10 +59,10 @@ TEST_P(LibtorchParity, HasTheSameLossGradientsAndRunningStatistics) {
   torch::Tensor expected = torch_batch.loss(reference->forward(torch_batch.images, torch_batch.counts));
   expected.backward();
 
-  EXPECT_NEAR(policy->lossAndGradients(batch.samples, 0), expected.item<double>(), 2e-6);
+  EXPECT_NEAR(policy->lossAndGradients(batch.samples, 0), expected.item<double>(), lossTolerance(0));
   const auto gradients = reference->named_parameters();
   for (const nn::TensorSlice& slice : policy->parameters().parameterSlices()) {
-    expectNear(policy->parameters().gradients(), slice, gradients[slice.name].grad(), 2e-4);
+    expectNear(policy->parameters().gradients(), slice, gradients[slice.name].grad(), kGradientTolerance);
   }
   const auto buffers = reference->named_buffers();
   for (const nn::TensorSlice& slice : policy->parameters().bufferSlices()) {
@@ -89,8 +90,7 @@ TEST_P(LibtorchParity, LearnsAlongTheSameLosses) {
     adam.step(policy->parameters().values(), policy->parameters().gradients(), kRate);
     policy->parametersChanged();
     losses.push_back(loss);
-    // Rounding errors grow from step to step.
-    EXPECT_NEAR(loss, expected.item<double>(), 2e-6 + 4e-5 * step) << "step " << step;
+    EXPECT_NEAR(loss, expected.item<double>(), lossTolerance(step)) << "step " << step;
   }
   EXPECT_LT(losses.back(), losses.front() - 0.01);
 }
