@@ -61,13 +61,14 @@ core::OptionSet fileOptions(PolicyOptions& options) {
 void checkMetadata(const nn::WeightsFile& file, const std::string& source) {
   const std::string& format = file.meta("format", source);
   if (format != kFormat) {
-    throw core::Error(source + ": metadata 'format' is '" + core::excerpt(format) + "'; this version reads '" + kFormat + "'");
+    throw core::Error(source + ": metadata 'format' is '" + core::excerpt(format) + "'; this version reads '" +
+                      kFormat + "'");
   }
   const std::string& actions = file.meta("actions", source);
   const bool same = nlohmann::json::parse(actions, nullptr, false) == nlohmann::json::parse(actionsText());
   if (!same) {  // nlohmann's != is false, too, for a text that is not JSON
-    throw core::Error(source + ": metadata 'actions' is " + core::excerpt(actions) + "; this version has " + actionsText() +
-                      ", in this order");
+    throw core::Error(source + ": metadata 'actions' is " + core::excerpt(actions) + "; this version has " +
+                      actionsText() + ", in this order");
   }
   if (file.metadata.count(kFieldOfView) == 0) {
     throw core::Error(source + ": metadata '" + kFieldOfView +
@@ -98,8 +99,8 @@ void loadTensors(const nn::WeightsFile& file, const std::string& source, const s
     const nn::StoredTensor& tensor = found->second;
     if (tensor.dtype != "F32") throw core::Error(where + " has type " + tensor.dtype + "; it must be F32");
     if (tensor.shape != slice.shape || tensor.bytes.size() != slice.size * sizeof(float)) {
-      throw core::Error(where + " has shape " + core::excerpt(join(tensor.shape)) + "; by the file's metadata it must be " +
-                        join(slice.shape));
+      throw core::Error(where + " has shape " + core::excerpt(join(tensor.shape)) +
+                        "; by the file's metadata it must be " + join(slice.shape));
     }
     float* to = values.data() + slice.offset;
     std::memcpy(to, tensor.bytes.data(), tensor.bytes.size());

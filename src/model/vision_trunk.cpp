@@ -219,7 +219,8 @@ std::string resolvedPrecision(const std::string& precision) {
 
 std::unique_ptr<VisionTrunk> makeVisionTrunk(nn::Parameters& parameters, const VisionTrunkShape& shape,
                                              const std::string& precision, int threads) {
-  if (resolvedPrecision(precision) == "bf16") return std::make_unique<BlockTrunk<nn::bfloat16>>(parameters, shape, threads);
+  if (resolvedPrecision(precision) == "bf16")
+    return std::make_unique<BlockTrunk<nn::bfloat16>>(parameters, shape, threads);
   return std::make_unique<BlockTrunk<float>>(parameters, shape, threads);
 }
 

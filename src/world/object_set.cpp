@@ -31,7 +31,8 @@ void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, con
   for (const auto& entry : map) {
     const std::string key = entry.first.as<std::string>("");
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw core::Error(place(file, entry.first) + "unknown key '" + core::excerpt(key) + "'; known are " + core::joined(known));
+      throw core::Error(place(file, entry.first) + "unknown key '" + core::excerpt(key) + "'; known are " +
+                        core::joined(known));
     }
     if (!seen.insert(key).second) throw core::Error(place(file, entry.first) + key + " is given twice");
   }
@@ -60,7 +61,8 @@ Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
   if (scale.minCoeff() > 0 && scale.allFinite()) return scale;
   std::ostringstream text;
   text << value;
-  throw core::Error(place(file, value) + "scale is '" + core::excerpt(text.str()) + "'; it must be a positive number or [x, y, z]");
+  throw core::Error(place(file, value) + "scale is '" + core::excerpt(text.str()) +
+                    "'; it must be a positive number or [x, y, z]");
 }
 
 /// Moves the mesh upright onto z = 0, centred above the origin. @return the point that became the origin.

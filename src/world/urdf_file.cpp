@@ -100,7 +100,9 @@ urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::strin
   return parse(xml, source, reason);
 }
 
-urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) { return parseUrdf(core::readFile(path, core::kMaxTextBytes), path); }
+urdf::ModelInterfaceSharedPtr loadUrdf(const std::string& path) {
+  return parseUrdf(core::readFile(path, core::kMaxTextBytes), path);
+}
 
 urdf::ModelInterfaceSharedPtr loadWholeUrdf(const std::string& path) {
   std::string reason;

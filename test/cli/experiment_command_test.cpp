@@ -123,10 +123,11 @@ TEST_F(ExperimentCommand, AListedCommandNeedsNothingButAShell) {
 }
 
 TEST_F(ExperimentCommand, MistakesEndItBeforeAnythingRuns) {
-  const std::string options = "options: {world: " + small_.world() + ", preset: " + small_.preset() + "}\n";
+  const std::string options =
+      "options: {world: " + small_.world() + ", preset: " + small_.preset() + ", task: " + small_.task() + "}\n";
   const std::pair<std::string, std::string> mistakes[] = {
       {options + "grid: [{kind: [early_fusion, fusion]}]", "kind: 'fusion'"},
-      {options + "grid: [{seed: [1]}]\nthen: {x: evaluate --policy {cell}/w --epizodes 3}", "--epizodes"},
+      {options + "grid: [{seed: [1]}]\nthen: {x: 'evaluate --policy {cell}/w --epizodes 3'}", "--epizodes"},
       {options + "grid: [{seed: [1]}]\nthen: {x: evaluate --episodes 3}", "--policy is required"},
       {options + "grid: [{seed: [1]}]\nthen: {x: dance}", "x of cell 'seed_1': 'dance'"},
       {options + "grid: [{seed: [1]}]\nthen: {x: 'evaluate --policy {cell}/w --episodes 0'}", "--episodes"}};

@@ -84,9 +84,9 @@ inline void writeGoldenCase(std::ostream& stream, const ParityCase& network, con
   }
 }
 
-/// The allowed error of a gradient, as a share of its largest number. Rounding decides which of two nearly equal numbers
-/// is the maximum that pooling takes, and each processor rounds differently. Such a change moves a pixel's gradient to
-/// its neighbour. With the same maxima the error is below 2e-4.
+/// The allowed error of a gradient, as a share of its largest number. Rounding decides which of two nearly equal
+/// numbers is the maximum that pooling takes, and each processor rounds differently. Such a change moves a pixel's
+/// gradient to its neighbour. With the same maxima the error is below 2e-4.
 constexpr double kGradientTolerance = 2e-2;
 
 /// The allowed error of the loss of a step, for the same reason and because rounding errors grow from step to step.

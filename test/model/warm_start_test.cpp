@@ -73,7 +73,9 @@ TEST(WarmStart, RefusesAnotherNetworkByTheOption) {
             std::string::npos);
   EXPECT_NE(errorFor([](PolicyOptions& options) { options.fusion_block = 2; }).find("its fusion_block is 1"),
             std::string::npos);
-  EXPECT_NE(errorFor([](PolicyOptions& options) { options.spatial_grid = "true"; }).find("its spatial_grid is false, not true"),
+  EXPECT_NE(errorFor([](PolicyOptions& options) {
+              options.spatial_grid = "true";
+            }).find("its spatial_grid is false, not true"),
             std::string::npos);
   EXPECT_NE(errorFor([](PolicyOptions& options) { options.image_size = 64; }).find("its image_size is 32"),
             std::string::npos);

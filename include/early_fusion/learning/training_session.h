@@ -33,8 +33,8 @@ class TrainingSession {
  public:
   /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.
   /// Removes the temporary files of earlier runs that were killed.
-  /// @throws Error as checkSession() does, and if the folder has another session, if another process trains in it, or if
-  /// the checkpoint has other options or is damaged.
+  /// @throws Error as checkSession() does, and if the folder has another session, if another process trains in it, or
+  /// if the checkpoint has other options or is damaged.
   TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world);
 
   /// Precision is "f32" or "bf16", never "auto": a resumed session must compute in the same arithmetic.

@@ -17,15 +17,15 @@ struct StoredTensor {
 /// The contents of a safetensors file: named tensors and metadata texts. The safetensors package for PyTorch can read
 /// it.
 ///
-/// A file that this program writes has a digest of all its bytes, in the metadata key "digest". parse() checks it before
-/// it reads anything else. Files of other programs have none.
+/// A file that this program writes has a digest of all its bytes, in the metadata key "digest". parse() checks it
+/// before it reads anything else. Files of other programs have none.
 struct WeightsFile {
   std::map<std::string, std::string> metadata;  ///< without the digest
   std::map<std::string, StoredTensor> tensors;
   bool has_digest = false;  ///< whether the bytes that were parsed had a digest, which was right
 
-  /// @throws Error naming `source` (a path or a topic), the tensor or key, and the fault; if the bytes differ from their
-  /// digest.
+  /// @throws Error naming `source` (a path or a topic), the tensor or key, and the fault; if the bytes differ from
+  /// their digest.
   static WeightsFile parse(const std::string& bytes, const std::string& source);
   static WeightsFile read(const std::string& path);
 
