@@ -32,6 +32,12 @@ T parseNumber(const std::string& text, const char* expected) {
   return value;
 }
 
+void emit(const std::vector<Option>& options, YAML::Emitter& emitter) {
+  emitter << YAML::BeginMap;
+  for (const Option& option : options) emitter << YAML::Key << option.name << YAML::Value << option.get();
+  emitter << YAML::EndMap;
+}
+
 std::string position(const YAML::Node& node, const std::string& file) {
   return file + ":" + std::to_string(node.Mark().line + 1);
 }
@@ -168,12 +174,25 @@ void OptionSet::setFromYamlFile(const std::string& file) {
   if (!map.IsNull()) setFromYaml(map, file);
 }
 
+void OptionSet::setFromYamlText(const std::string& text, const std::string& source) {
+  try {
+    setFromYaml(YAML::Load(text), source);
+  } catch (const YAML::Exception& error) {
+    throw Error(source + ": '" + excerpt(text) + "' is not valid YAML: " + excerpt(error.msg));
+  }
+}
+
 std::string OptionSet::toYaml() const {
   YAML::Emitter emitter;
-  emitter << YAML::BeginMap;
-  for (const Option& option : options_) emitter << YAML::Key << option.name << YAML::Value << option.get();
-  emitter << YAML::EndMap;
+  emit(options_, emitter);
   return std::string(emitter.c_str()) + "\n";
+}
+
+std::string OptionSet::toYamlLine() const {
+  YAML::Emitter emitter;
+  emitter << YAML::Flow;
+  emit(options_, emitter);
+  return emitter.c_str();
 }
 
 }  // namespace early_fusion::core

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 
 namespace early_fusion::sim {
@@ -31,6 +32,23 @@ Task loadTask(const std::string& name_or_file) {
   task.validate(file);
   return task;
 }
+
+Task parseTask(const std::string& text) {
+  Task task;
+  if (!text.empty() && text.front() == '{') {
+    task.options().setFromYamlText(text, "task");
+    task.validate("task");
+    return task;
+  }
+  if (text.find_first_of("./") != std::string::npos) {
+    throw core::Error("task: '" + core::excerpt(text) +
+                      "' names a file; messages name a task (simple, medium, hard) or its options, such as "
+                      "{instances: 6, requested: 2}");
+  }
+  return loadTask(text);
+}
+
+std::string taskText(Task task) { return task.options().toYamlLine(); }
 
 Task withUpTo(std::int64_t most, Task task) {
   if (most > kMaxInstances) {

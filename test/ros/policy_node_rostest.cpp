@@ -283,6 +283,19 @@ TEST_F(PolicyNodeTest, SavesAndLoadsWeights) {
   EXPECT_NE(load.response.message.find("missing.safetensors"), std::string::npos);
 }
 
+TEST_F(PolicyNodeTest, ServicesUseNoFilesOutsideOfTheFolder) {
+  ASSERT_TRUE(publishWeights("kept"));
+  LoadWeights load;
+  load.request.path = "/etc/passwd";
+  ASSERT_TRUE(::ros::service::call(kLoadWeightsService, load));
+  EXPECT_FALSE(load.response.success);
+  EXPECT_EQ(load.response.message.find("path: '/etc/passwd' is not a file in /tmp; "), 0u) << load.response.message;
+  SaveWeights save;
+  save.request.path = "../home/weights.safetensors";
+  ASSERT_TRUE(::ros::service::call(kSaveWeightsService, save));
+  EXPECT_FALSE(save.response.success) << save.response.message;
+}
+
 TEST_F(PolicyNodeTest, DrawsAnAnnotatedImageForWhoLooks) {
   ASSERT_TRUE(publishWeights("drawn"));
   sensor_msgs::ImageConstPtr annotated;

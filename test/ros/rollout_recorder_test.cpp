@@ -25,7 +25,7 @@ class RolloutRecorderTest : public testing::Test {
   static constexpr std::uint64_t kSeed = 4;
 
   RolloutRecorderTest() {
-    plan_.goal.task = files_.task();
+    plan_.goal.task = sim::taskText(sim::loadTask(files_.task()));
     plan_.goal.seed = kSeed;
     plan_.goal.first_episode = 10;
     plan_.goal.episodes = 3;

@@ -206,6 +206,8 @@ TEST_F(SimulatorNodeTest, ARequestByHandIsAskedAtOnce) {
 
 TEST_F(SimulatorNodeTest, AResetWithAnUnknownTaskIsRefused) {
   EXPECT_FALSE(reset(1, 1, "impossible"));
+  EXPECT_FALSE(reset(1, 1, "/etc/passwd"));
+  EXPECT_EQ(message_.find("root"), std::string::npos) << "shows what is in a file: " << message_;
   EXPECT_NE(message_.find("impossible"), std::string::npos);
 }
 
@@ -213,7 +215,7 @@ TEST_F(SimulatorNodeTest, AGoalPlaysItsEpisodesInOrder) {
   actionlib::SimpleActionClient<RunEpisodesAction> client(node_, kRunEpisodesAction, false);
   ASSERT_TRUE(spinUntil([&] { return client.isServerConnected(); }));
   RunEpisodesGoal goal;
-  goal.task = files_.task();
+  goal.task = sim::taskText(sim::loadTask(files_.task()));
   goal.seed = 9;
   goal.max_instances = 6;
   goal.first_episode = 20;
@@ -242,7 +244,7 @@ TEST_F(SimulatorNodeTest, TheExpertDrivesTheStepsThatAGoalGivesIt) {
   actionlib::SimpleActionClient<RunEpisodesAction> client(node_, kRunEpisodesAction, false);
   ASSERT_TRUE(spinUntil([&] { return client.isServerConnected(); }));
   RunEpisodesGoal goal;
-  goal.task = files_.task();
+  goal.task = sim::taskText(sim::loadTask(files_.task()));
   goal.seed = 9;
   goal.first_episode = 30;
   goal.episodes = 2;

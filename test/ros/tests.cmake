@@ -3,8 +3,9 @@ find_package(rostest QUIET)
 add_library(${PROJECT_NAME}_child_process STATIC ros/child_process.cpp)
 target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
-foreach(name acting_policy camera_crop camera_image conversions joint_stepper markers option_tables pan_tilt_stepper
-    request_list request_pairing rollout_recorder sight_line standstill topic_watch virtual_camera virtual_joint)
+foreach(name acting_policy camera_crop camera_image conversions files_folder joint_stepper markers option_tables
+    pan_tilt_stepper request_list request_pairing rollout_recorder sight_line standstill topic_watch virtual_camera
+    virtual_joint)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()

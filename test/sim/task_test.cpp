@@ -65,6 +65,21 @@ TEST(Task, NamesFileKeyAndValueOfAMistake) {
   EXPECT_TRUE(mentions(errorOfTask("instances: [4\n"), "mine.yaml"));
 }
 
+TEST(Task, AMessageHasTheWholeTaskAndNamesNoFile) {
+  const world::TestFolder folder;
+  const std::string file = folder.write("odd.yaml", "{name: 'a, {b}: c', instances: 7, requested: 2, steps: 9}");
+  Task task = loadTask(file), parsed = parseTask(taskText(task));
+  EXPECT_EQ(parsed.name, "a, {b}: c");
+  EXPECT_EQ(parsed.options().toYaml(), task.options().toYaml());
+  EXPECT_EQ(parseTask("hard").instances, 12);
+  EXPECT_EQ(parseTask("{instances: 6}").instances, 6);
+  for (const std::string& path : {file, std::string("odd.yaml"), std::string("/etc/shadow"), std::string("../x")}) {
+    EXPECT_TRUE(mentions(world::errorOf([&] { parseTask(path); }), "task: '" + path + "' names a file; messages name"));
+  }
+  EXPECT_TRUE(mentions(world::errorOf([] { parseTask("{instances: 99}"); }), "instances: '99' is out of range"));
+  EXPECT_TRUE(mentions(world::errorOf([] { parseTask("{instances: 2, requested: 3}"); }), "requested is 3"));
+  EXPECT_TRUE(mentions(world::errorOf([] { parseTask("{instances: 2"); }), "is not valid YAML"));
+}
 TEST(Task, CannotRequestMoreThanThereIs) {
   const std::string error = errorOfTask("instances: 2\nrequested: 3\n");
   EXPECT_TRUE(mentions(error, "mine.yaml: requested is 3; it must be at most instances, 2")) << error;

@@ -70,9 +70,13 @@ class OptionSet {
   /// value.
   void setFromYaml(const YAML::Node& map, const std::string& file);
   void setFromYamlFile(const std::string& file);
+  /// Sets an option for every key of a text that is a YAML map. @param source its origin, for error texts.
+  void setFromYamlText(const std::string& text, const std::string& source);
 
   /// The current values as "name: value" lines, for logs and metadata.
   std::string toYaml() const;
+  /// The same on one line: "{name: value, other: value}".
+  std::string toYamlLine() const;
 
  private:
   void insert(Option option);

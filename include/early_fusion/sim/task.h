@@ -30,6 +30,14 @@ inline constexpr int kMaxInstances = 32;
 /// @throws Error naming file, key and value, or the known names.
 Task loadTask(const std::string& name_or_file);
 
+/// The task that a message names: simple, medium, hard, or the task's options as YAML in braces, such as
+/// "{instances: 6, requested: 2}". Messages name no files.
+/// @throws Error naming the text, or option and value.
+Task parseTask(const std::string& text);
+
+/// The text that parseTask() reads as this task: its options in braces.
+std::string taskText(Task task);
+
 /// The task for training episodes with up to `most` instances. Returns the task itself if it has that many already.
 /// @throws Error if `most` is more than kMaxInstances.
 Task withUpTo(std::int64_t most, Task task);

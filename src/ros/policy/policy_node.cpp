@@ -39,6 +39,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
           "edge of the grid of occlusion saliency that tints the annotated image; costs one prediction for each cell; "
           "0: no tint; kinds with attention show their own map");
+  set.add("files", files, "folder of the files that load_weights and save_weights may use; empty: $ROS_HOME/early_fusion or\n"
+          "~/.ros/early_fusion");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -174,7 +176,7 @@ void PolicyNode::loadFile(const std::string& path) {
 
 bool PolicyNode::onLoadWeights(LoadWeights::Request& request, LoadWeights::Response& response) {
   try {
-    loadFile(request.path);
+    loadFile(pathInFolder(request.path, options_.files));
     response.success = true;
     response.message = "using weights '" + weights_id_ + "'";
   } catch (const core::Error& error) {
@@ -187,9 +189,10 @@ bool PolicyNode::onLoadWeights(LoadWeights::Request& request, LoadWeights::Respo
 bool PolicyNode::onSaveWeights(SaveWeights::Request& request, SaveWeights::Response& response) {
   try {
     if (!policy_.loaded()) throw core::Error("there are no weights to save yet");
-    policy_.file().write(request.path);
+    const std::string path = pathInFolder(request.path, options_.files);
+    policy_.file().write(path);
     response.success = true;
-    response.message = "wrote weights '" + weights_id_ + "' to " + request.path;
+    response.message = "wrote weights '" + weights_id_ + "' to " + path;
   } catch (const core::Error& error) {
     response.success = false;
     response.message = error.what();

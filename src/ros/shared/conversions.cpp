@@ -36,7 +36,7 @@ geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
 }
 
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
-  const sim::Task task = sim::withUpTo(goal.max_instances, sim::loadTask(goal.task));
+  const sim::Task task = sim::withUpTo(goal.max_instances, sim::parseTask(goal.task));
   const std::string pairs = goal.pairs.empty() ? "all" : goal.pairs;
   return {sim::withPairs(pairs, {goal.held_out_pairs, goal.held_out_pairs_seed}, task), goal.seed, goal.first_episode};
 }

@@ -168,7 +168,7 @@ bool SimulatorNode::onReset(Reset::Request& request, Reset::Response& response) 
   try {
     if (driver_ == Driver::kGoal) throw core::Error("a RunEpisodes goal is being played; cancel it first");
     sim::EpisodeKey key{free_run_.task, request.seed, request.episode};
-    if (!request.task.empty()) key.task = sim::loadTask(request.task);
+    if (!request.task.empty()) key.task = sim::parseTask(request.task);
     begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, key);
     response.message =
         "episode " + std::to_string(key.number) + " of task " + key.task.name + ", seed " + std::to_string(key.seed);

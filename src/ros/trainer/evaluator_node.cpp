@@ -68,7 +68,7 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   }
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
-  plan.goal.task = options_.task;
+  plan.goal.task = sim::taskText(task_);
   setPairs(task_, plan.goal);
   plan.goal.seed = options_.seed;
   plan.goal.episodes = static_cast<std::uint32_t>(options_.episodes);

@@ -70,7 +70,7 @@ void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
 void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory,
                        std::function<void()> on_done) {
   publishWeights(plan.mode, plan.goal.seed);
-  plan.goal.task = session_->options().task;
+  plan.goal.task = sim::taskText(session_->task());
   plan.weights = weights_id_;
   plan.goal.training_expert = session_->options().training.training_expert;
   workers_.start(plan, std::move(on_trajectory), std::move(on_done));

@@ -214,7 +214,7 @@ std::string VirtualRobotNode::takeAway(const PickGoal& goal) {
 bool VirtualRobotNode::onReset(Reset::Request& request, Reset::Response& response) {
   try {
     sim::EpisodeKey key{next_.task, request.seed, request.episode};
-    if (!request.task.empty()) key.task = sim::loadTask(request.task);
+    if (!request.task.empty()) key.task = sim::parseTask(request.task);
     response.success = begin(key);
     if (response.success) next_ = {key.task, key.seed, key.number + 1};
     response.message =

@@ -14,6 +14,7 @@
 #include "early_fusion/ros/policy/acting_policy.h"
 #include "early_fusion/ros/policy/request_pairing.h"
 #include "early_fusion/ros/shared/camera_crop.h"
+#include "early_fusion/ros/shared/files_folder.h"
 #include "early_fusion/ros/shared/health.h"
 #include "early_fusion/ros/shared/topic_watch.h"
 
@@ -32,6 +33,7 @@ class PolicyNode {
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
+    std::string files;  ///< folder of the files that services name; empty: defaultFilesFolder()
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();

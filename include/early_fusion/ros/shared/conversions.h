@@ -23,7 +23,7 @@ namespace early_fusion::nodes {
 
 geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
 
-/// The first episode of a goal. @throws core::Error as sim::loadTask(), sim::withUpTo() and sim::withPairs().
+/// The first episode of a goal. @throws core::Error as sim::parseTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);
 
 /// Which steps of a goal's episodes the training expert drives.
