@@ -92,6 +92,8 @@ void CellFolder::checkOptions() const {
   learning::SessionOptions stored, wanted = cell_.session;
   core::OptionSet before = stored.options();
   before.setFromYamlFile(file);
+  // A session stores what its processor made of `auto` and checks that itself when it goes on.
+  if (wanted.policy.precision == "auto") wanted.policy.precision = stored.policy.precision;
   const core::OptionSet now = wanted.options();
   for (std::size_t i = 0; i < now.options().size(); ++i) {
     const core::Option &one = before.options()[i], &other = now.options()[i];

@@ -56,6 +56,21 @@ TEST(CellFolder, ACellOfOtherOptionsIsAnError) {
       << error;
 }
 
+/// A session stores what its processor made of `precision: auto`.
+TEST(CellFolder, ThePrecisionThatAProcessorHasIsNoOtherGrid) {
+  const SmallExperiment small;
+  learning::SessionOptions session = small.experiment.cells[2].session;
+  for (const char* precision : {"f32", "bf16"}) {
+    session.policy.precision = precision;
+    small.write("late_fusion", "options.yaml", session.options().toYaml());
+    EXPECT_EQ(errorOf([&] { small.folders(); }), "accepted");
+  }
+  Experiment other = small.experiment;
+  other.cells[2].session.policy.precision = "f32";
+  EXPECT_NE(errorOf([&] { cellFolders(other, small.output()); }).find("precision = 'bf16', not 'f32'"),
+            std::string::npos);
+}
+
 /// So that a run goes on with a program that has more options: their defaults are what the program did before.
 TEST(CellFolder, AnOptionThatTheCellDoesNotSayHasItsDefault) {
   const SmallExperiment small;

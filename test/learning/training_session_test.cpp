@@ -175,7 +175,9 @@ TEST_F(TrainingSessionTest, NoSampleOfARoundHasAHeldOutPair) {
         }
       }
     });
-    if (std::string(share) == "0") EXPECT_GT(with_held_out, 100);
+    if (std::string(share) == "0") {
+      EXPECT_GT(with_held_out, 100);
+    }
   }
   EXPECT_EQ(with_held_out, 0);
   EXPECT_GT(of_pairs, 100);

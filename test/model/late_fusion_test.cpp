@@ -10,9 +10,15 @@ namespace {
 TEST(LateFusion, TheHeadSeesTheLastMapAndTheEmbedding) {
   const LateFusion policy(smallOptions(), testVocabulary(kSmallItems), 1);
   for (const nn::TensorSlice& slice : policy.parameters().parameterSlices()) {
-    if (slice.name == "hidden.weight") EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 16 * 2 * 2 + 16}));
-    if (slice.name == "block1.conv.weight") EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 9, 3, 3}));
-    if (slice.name == "block2.conv.weight") EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 16, 3, 3}));
+    if (slice.name == "hidden.weight") {
+      EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 16 * 2 * 2 + 16}));
+    }
+    if (slice.name == "block1.conv.weight") {
+      EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 9, 3, 3}));
+    }
+    if (slice.name == "block2.conv.weight") {
+      EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 16, 3, 3}));
+    }
   }
 }
 

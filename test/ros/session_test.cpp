@@ -281,6 +281,9 @@ TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
   // roslaunch's number for a node depends on whether it started the master too.
   EXPECT_TRUE(std::regex_search(view->output(), std::regex(R"(\[play-\d+\] has died!\nprocess has finished cleanly)")))
       << view->output();
+  ChildProcess clock({"rosparam", "get", "/use_sim_time"}, environment_, files_->path("clock.log"));
+  ASSERT_TRUE(clock.ends(60));
+  EXPECT_EQ(clock.output(), "false\n") << "time would stand still for whoever comes next";
 }
 
 }  // namespace

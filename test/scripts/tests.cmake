@@ -7,6 +7,8 @@ add_test(NAME scripts_animate_episode_test
 set_tests_properties(scripts_animate_episode_test PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts_documents_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/documents_test.py ${PROJECT_SOURCE_DIR})
+add_test(NAME scripts_download_ycb_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/download_ycb_test.py ${PROJECT_SOURCE_DIR})
 add_test(NAME scripts_plots_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/plots_test.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(scripts_plots_test PROPERTIES SKIP_RETURN_CODE 77)
