@@ -182,6 +182,36 @@ TEST_F(SessionTest, ScoresOnTheWayAsTheCommandLineDoes) {
   EXPECT_EQ(result("scored")["per_episode"], result("reference")["per_episode"]);
 }
 
+TEST_F(SessionTest, AWorkerOfItsOwnEndsWithTheSession) {
+  const std::vector<std::string> worker = {"__ns:=away/worker_5", "session:=/away", "world:=" + files_->world(),
+                                           "timeout:=2"};
+  const auto first = launch("worker.launch", worker);
+  const auto session = launchTraining("away", {"__ns:=away", "private_tf:=true", "workers:=5"});
+  ASSERT_TRUE(first->ends(kSessionSec)) << first->output() << session->output();
+  EXPECT_NE(first->output().find("the session is finished: F1"), std::string::npos) << first->output();
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  EXPECT_TRUE(weights("away") == weights("reference")) << session->output();
+}
+
+TEST_F(SessionTest, AWorkerOfItsOwnEndsWhenTrainerOrMasterIsGone) {
+  const std::vector<std::string> worker = {"__ns:=worker_5", "world:=" + files_->world(), "timeout:=2"};
+  const auto trainerLess = launch("worker.launch", worker);
+  const auto session = launchTraining("stopped", {"rate:=1"});
+  ASSERT_TRUE(waitFor([&] { return processesOf("trainer").size() == 1; })) << session->output();
+  std::this_thread::sleep_for(std::chrono::seconds(4));
+  session->signal(SIGINT);
+  ASSERT_TRUE(trainerLess->ends(kSessionSec)) << trainerLess->output();
+  EXPECT_NE(trainerLess->output().find("no trainer has published /progress for 2 s"), std::string::npos)
+      << trainerLess->output();
+
+  const auto masterLess = launch("worker.launch", worker);
+  ASSERT_TRUE(waitFor([&] { return processesOf("session_monitor").size() == 1; })) << masterLess->output();
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  master_.reset();
+  ASSERT_TRUE(masterLess->ends(kSessionSec)) << masterLess->output();
+  EXPECT_NE(masterLess->output().find("has not answered for 2 s"), std::string::npos) << masterLess->output();
+}
+
 TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
   const std::string kind = "softmax_attention_map";
   const auto left = launchTraining("left", {"__ns:=left", "private_tf:=true"});

@@ -12,3 +12,7 @@ add_test(NAME scripts_download_ycb_test
 add_test(NAME scripts_plots_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/plots_test.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(scripts_plots_test PROPERTIES SKIP_RETURN_CODE 77)
+add_test(NAME scripts_isolated_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/isolated_test.py
+                 ${PROJECT_SOURCE_DIR} $<TARGET_FILE:simulator_node>)
+set_tests_properties(scripts_isolated_test PROPERTIES SKIP_RETURN_CODE 77)
