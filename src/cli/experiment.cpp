@@ -1,5 +1,6 @@
 #include <signal.h>
 
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,9 +9,9 @@
 #include "early_fusion/core/command_words.h"
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
+#include "early_fusion/core/folder_lock.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/experiment/experiment_runner.h"
-#include "early_fusion/experiment/folder_lock.h"
 #include "early_fusion/experiment/results.h"
 
 namespace early_fusion::cli {
@@ -18,6 +19,8 @@ namespace early_fusion::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr auto kPatience = std::chrono::seconds(5);  // the cells of a killed runner end within this time
 
 struct ExperimentOptions {
   std::string file;
@@ -74,7 +77,7 @@ void collect(const experiment::Experiment& experiment, const std::vector<experim
 }
 
 void run(const experiment::Experiment& experiment, const ExperimentOptions& options) {
-  const experiment::FolderLock lock(options.output);
+  const core::FolderLock lock(options.output, core::FolderLock::Holder::kThisProcessAndChildren, kPatience);
   const std::vector<experiment::CellFolder> folders = experiment::cellFolders(experiment, options.output);
   experiment::RunOptions run;
   run.jobs = options.jobs;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <thread>
 
 #include "descriptor.h"
 #include "early_fusion/core/error.h"
@@ -18,6 +19,8 @@ namespace early_fusion::core {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(20);
 
 /// "process 1234 on host"
 std::string thisProcess() {
@@ -34,21 +37,28 @@ std::string holderOf(int fd) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::string& folder)
-    : folder_(folder), file_((fs::path(folder) / "session.lock").string()) {
+FolderLock::FolderLock(const std::string& folder, Holder holder, std::chrono::milliseconds patience)
+    : folder_(folder), file_((fs::path(folder) / "writer.lock").string()) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw Error(folder_ + ": cannot create the folder: " + error.message());
   lock_ = std::make_unique<Descriptor>(file_, O_RDWR | O_CREAT);
   if (lock_->get() < 0) failWithErrno(file_, "write");
-  if (::flock(lock_->get(), LOCK_EX | LOCK_NB) != 0) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::flock(lock_->get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) failWithErrno(file_, "lock");
+    if (std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(kPause);
+      continue;
+    }
     throw Error(folder_ + ": " + holderOf(lock_->get()) +
                 " writes in this folder; wait for its end, or choose another folder");
   }
-  const std::string holder = thisProcess();
+  if (holder == Holder::kThisProcessAndChildren && ::fcntl(lock_->get(), F_SETFD, 0) != 0) {
+    failWithErrno(file_, "share");
+  }
   if (::ftruncate(lock_->get(), 0) != 0) failWithErrno(file_, "write");
-  writeAll(lock_->get(), holder, file_);
+  writeAll(lock_->get(), thisProcess(), file_);
 }
 
 FolderLock::~FolderLock() = default;
@@ -60,7 +70,7 @@ void FolderLock::check() const {
                     held.st_ino == named.st_ino && held.st_dev == named.st_dev;
   if (!same) {
     throw Error(folder_ +
-                ": the folder or its session.lock was removed or replaced while this process wrote in it; "
+                ": the folder or its writer.lock was removed or replaced while this process wrote in it; "
                 "what was in it is lost, so nothing more is written");
   }
 }

@@ -9,6 +9,7 @@
 #include "early_fusion/core/names.h"
 #include "early_fusion/world/convex_hull.h"
 #include "primitive_mesh.h"
+#include "resource_path.h"
 #include "urdf_file.h"
 
 namespace early_fusion::world {
@@ -37,17 +38,6 @@ std::uint32_t colourOf(const urdf::Visual& visual) {
     return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
   };
   return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
-}
-
-std::string meshFile(const std::string& name, const std::string& urdf_file) {
-  const std::string own = "package://early_fusion/";
-  if (name.compare(0, own.size(), own) == 0) return core::shareFolder() + "/" + name.substr(own.size());
-  if (name.compare(0, 7, "file://") == 0) return name.substr(7);
-  if (name.find("://") != std::string::npos) {
-    throw core::Error("cannot find mesh '" + name + "': write package://early_fusion/, file:// or a path relative to " +
-                      urdf_file);
-  }
-  return core::resolvePath(urdf_file, name);
 }
 
 void requirePositive(std::initializer_list<double> sizes) {
@@ -86,7 +76,8 @@ TexturedMesh meshOf(const urdf::GeometrySharedPtr& shape, std::uint32_t colour, 
       break;
   }
   const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
-  return loadTexturedMesh(meshFile(mesh.filename, urdf_file), toEigen(mesh.scale), max_triangles);
+  return loadTexturedMesh(resourcePath(urdf_file, mesh.filename), Eigen::Affine3d(Eigen::Scaling(toEigen(mesh.scale))),
+                          max_triangles);
 }
 
 HorizontalRectangle topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, const std::string& where) {

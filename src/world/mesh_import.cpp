@@ -14,6 +14,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
@@ -36,9 +37,13 @@ constexpr unsigned kAfterImport = aiProcess_Triangulate | aiProcess_GenSmoothNor
 /// Opens nothing but regular files of plausible size. A FIFO would wait, a device might never end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
+  /// @param missing the first file that an importer wanted and did not get.
+  explicit RegularFiles(std::string& missing) : missing_(missing) {}
   bool Exists(const char* file) const override { return plausible(file) && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return plausible(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    Assimp::IOStream* stream = plausible(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    if (stream == nullptr && missing_.empty()) missing_ = file;
+    return stream;
   }
 
  private:
@@ -46,6 +51,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     std::error_code error;
     return fs::is_regular_file(file, error) && fs::file_size(file, error) <= kMaxMeshBytes && !error;
   }
+
+  std::string& missing_;
 };
 
 std::string meshName(const std::string& path, const aiMesh& mesh) {
@@ -85,8 +92,9 @@ void checkScene(const std::string& path, const aiScene& scene) {
 }
 
 /// Reads the file, checks what assimp gives, and only then lets it compute with the indices.
-const aiScene& import(Assimp::Importer& importer, const std::string& path) {
-  importer.SetIOHandler(new RegularFiles);  // the importer owns it
+/// @param missing the first file that the mesh names and that cannot be read.
+const aiScene& import(Assimp::Importer& importer, const std::string& path, std::string& missing) {
+  importer.SetIOHandler(new RegularFiles(missing));  // the importer owns it
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngleDeg);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   // A Collada file's coordinates are used unchanged, as in other ROS programs: z is up in the world.
@@ -131,7 +139,8 @@ void lower(int resource, rlim_t value) {
   ::alarm(kMaxSec);  // also ends a child that waits
   try {
     Assimp::Importer importer;
-    import(importer, path);
+    std::string missing;
+    import(importer, path, missing);
   } catch (const std::exception&) {
     // The parent gets the same error.
   }
@@ -179,7 +188,14 @@ const aiScene& importMesh(Assimp::Importer& importer, const std::string& path) {
     checkPly(path);
     checkInChild(path);
   }
-  return import(importer, path);
+  std::string missing;
+  const aiScene& scene = import(importer, path, missing);
+  importer.SetIOHandler(nullptr);  // the other one refers to `missing`
+  if (!missing.empty()) {
+    std::cerr << "early_fusion: " << path << ": " << missing
+              << ", which it names, cannot be read; drawn without its materials\n";
+  }
+  return scene;
 }
 
 }  // namespace early_fusion::world

@@ -4,32 +4,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
+#include "resource_path.h"
+
+// Only for TGA, which OpenCV cannot decode.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_TGA
+#define STBI_NO_STDIO
+#define STBI_NO_FAILURE_STRINGS
+#define STBI_MAX_DIMENSIONS 16384
+#include <stb_image.h>
 
 namespace early_fusion::world {
 
 namespace {
 
-constexpr int kPlainSize = 4;
+constexpr int kUniformSize = 4;
 constexpr float kMaxSpecular = 0.5f;
 constexpr float kGlossyShininess = 30.f;
 
-std::uint32_t packColor(float red, float green, float blue) {
-  const auto byte = [](float value) {
-    return static_cast<std::uint32_t>(std::lround(255.f * std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f)));
-  };
-  return byte(red) | byte(green) << 8 | byte(blue) << 16 | 0xff000000u;
+/// The name of the diffuse image; empty if there is none.
+std::string imageName(const aiMaterial& material) {
+  for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+    aiString name;
+    if (material.GetTexture(type, 0, &name) == AI_SUCCESS && name.length > 0) return name.C_Str();
+  }
+  return "";
 }
 
 Texture plainTexture(const aiMaterial& material) {
   aiColor4D color(0.8f, 0.8f, 0.8f, 1.f);
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) material.Get(AI_MATKEY_BASE_COLOR, color);
-  return {kPlainSize, std::vector<std::uint32_t>(kPlainSize * kPlainSize, packColor(color.r, color.g, color.b))};
+  return uniformTexture(packColor(color));
 }
 
 /// Uses an area filter to shrink a texture, so that fine print becomes grey instead of noise.
@@ -77,6 +90,23 @@ std::int64_t claimedPixels(const std::string& bytes) {
   return 0;
 }
 
+/// @return an empty image if the bytes are no TGA file.
+cv::Mat decodeTga(const std::string& bytes) {
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || width < 1 || height < 1 ||
+      static_cast<std::int64_t>(width) * height > kMaxPixels) {
+    return cv::Mat();
+  }
+  unsigned char* rgb = stbi_load_from_memory(data, size, &width, &height, &channels, 3);
+  if (rgb == nullptr) return cv::Mat();
+  cv::Mat bgr;
+  cv::cvtColor(cv::Mat(height, width, CV_8UC3, rgb), bgr, cv::COLOR_RGB2BGR);
+  stbi_image_free(rgb);
+  return bgr;
+}
+
 /// @return an empty image if the bytes are none. @throws Error if the image is too large.
 cv::Mat decode(const std::string& bytes, const std::string& where) {
   const std::int64_t pixels = bytes.size() < 4 ? 0 : claimedPixels(bytes);
@@ -86,7 +116,8 @@ cv::Mat decode(const std::string& bytes, const std::string& where) {
   }
   if (bytes.empty()) return cv::Mat();
   try {
-    return cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+    const cv::Mat image = cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+    return image.empty() ? decodeTga(bytes) : image;
   } catch (const cv::Exception&) {
     return cv::Mat();
   }
@@ -116,11 +147,7 @@ cv::Mat readImage(const aiScene& scene, const std::string& name, const std::stri
     if (image.empty()) throw core::Error(where + " cannot be decoded");
     return image;
   }
-  std::string file = name;
-  std::replace(file.begin(), file.end(), '\\', '/');
-  const std::string scheme = "file://";
-  if (file.compare(0, scheme.size(), scheme) == 0) file.erase(0, scheme.size());
-  file = core::resolvePath(mesh_path, file);
+  const std::string file = resourcePath(mesh_path, name);
   const std::string bytes = [&] {
     try {
       return core::readFile(file, kMaxTextureBytes);
@@ -130,21 +157,36 @@ cv::Mat readImage(const aiScene& scene, const std::string& name, const std::stri
   }();
   const cv::Mat image = decode(bytes, mesh_path + ": its texture " + file);
   if (image.empty()) {
-    throw core::Error(mesh_path + ": its texture " + file + " is not an image that can be decoded; use PNG or JPEG");
+    throw core::Error(mesh_path + ": its texture " + file +
+                      " is not an image that can be decoded; use PNG, JPEG or TGA");
   }
   return image;
 }
 
 }  // namespace
 
+std::uint32_t packColor(const aiColor4D& color) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint32_t>(std::lround(255.f * std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f)));
+  };
+  return byte(color.r) | byte(color.g) << 8 | byte(color.b) << 16 | 0xff000000u;
+}
+
+bool hasImage(const aiMaterial& material) { return !imageName(material).empty(); }
+
+Texture uniformTexture(std::uint32_t color) {
+  return {kUniformSize, std::vector<std::uint32_t>(kUniformSize * kUniformSize, color)};
+}
+
 Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path) {
-  for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
-    aiString name;
-    if (material.GetTexture(type, 0, &name) == AI_SUCCESS && name.length > 0) {
-      return squareTexture(readImage(scene, name.C_Str(), mesh_path));
-    }
+  const std::string name = imageName(material);
+  if (name.empty()) return plainTexture(material);
+  try {
+    return squareTexture(readImage(scene, name, mesh_path));
+  } catch (const core::Error& error) {
+    std::cerr << "early_fusion: " << error.what() << "; drawn in its plain colour\n";
+    return plainTexture(material);
   }
-  return plainTexture(material);
 }
 
 float readSpecular(const aiMaterial& material) {

@@ -11,9 +11,18 @@ namespace early_fusion::world {
 /// The maximum edge of a texture [px]. Larger ones are reduced, because a frame of 128 pixels shows no finer detail.
 inline constexpr int kMaxTextureSize = 512;
 
+/// 0xAABBGGRR, opaque. NaN is 0.
+std::uint32_t packColor(const aiColor4D& color);
+
+/// Whether the material names a diffuse image.
+bool hasImage(const aiMaterial& material);
+
+/// A texture of one colour, 0xAABBGGRR.
+Texture uniformTexture(std::uint32_t color);
+
 /// The material's diffuse image as a square with a power-of-two edge. It comes from a file beside `mesh_path` or is
-/// embedded in the scene. Without an image, the result is 4x4 texels of the diffuse colour.
-/// @throws Error naming `mesh_path` and the image that cannot be read.
+/// embedded in the scene. Without an image, or with one that cannot be read, which a note on stderr names, the result
+/// is a uniform texture of the diffuse colour.
 Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path);
 
 /// The strength of the highlight, [0, 1], computed from the specular colour and shininess or from a physically based

@@ -13,6 +13,7 @@
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/options.h"
 #include "early_fusion/world/convex_hull.h"
+#include "resource_path.h"
 
 namespace early_fusion::world {
 
@@ -65,6 +66,29 @@ Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
                     "'; it must be a positive number or [x, y, z]");
 }
 
+/// "[roll, pitch, yaw]" in degrees about the fixed axes x, y and z, in this order; no rotation if absent.
+Eigen::Quaterniond readRotation(const YAML::Node& value, const std::string& file) {
+  if (!value) return Eigen::Quaterniond::Identity();
+  Eigen::Vector3d degrees = Eigen::Vector3d::Constant(NAN);
+  try {
+    if (value.IsSequence() && value.size() == 3) {
+      for (int axis = 0; axis < 3; ++axis) degrees[axis] = value[axis].as<double>();
+    }
+  } catch (const YAML::Exception&) {
+    degrees.setConstant(NAN);
+  }
+  if (!degrees.allFinite() || degrees.cwiseAbs().maxCoeff() > 360) {
+    std::ostringstream text;
+    text << value;
+    throw core::Error(place(file, value) + "rotation is '" + core::excerpt(text.str()) +
+                      "'; it must be [roll, pitch, yaw], each within [-360, 360] degrees");
+  }
+  const Eigen::Vector3d angles = degrees * EIGEN_PI / 180;
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+                            Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                            Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
+}
+
 /// Moves the mesh upright onto z = 0, centred above the origin. @return the point that became the origin.
 Eigen::Vector3d normalise(TexturedMesh& mesh) {
   const Eigen::AlignedBox3f bounds = mesh.bounds();
@@ -86,14 +110,17 @@ void checkSize(const TexturedMesh& mesh, const std::string& where) {
 
 Object readObject(const YAML::Node& entry, const std::string& file, int max_triangles) {
   if (!entry.IsMap()) throw core::Error(place(file, entry) + "an object is a map of name, mesh and scale");
-  checkKeys(entry, {"mesh", "name", "scale"}, file);
+  checkKeys(entry, {"mesh", "name", "rotation", "scale"}, file);
   Object object;
   object.name = readText(entry, "name", file);
-  object.mesh_file = core::resolvePath(file, readText(entry, "mesh", file));
   object.mesh_scale = readScale(entry["scale"], file);
+  object.mesh_rotation = readRotation(entry["rotation"], file);
+  const std::string mesh = readText(entry, "mesh", file);
   const std::string where = place(file, entry) + "object '" + core::excerpt(object.name) + "': ";
   try {
-    object.mesh = loadTexturedMesh(object.mesh_file, object.mesh_scale, max_triangles);
+    object.mesh_file = resourcePath(file, mesh);
+    object.mesh = loadTexturedMesh(
+        object.mesh_file, Eigen::Affine3d(object.mesh_rotation) * Eigen::Scaling(object.mesh_scale), max_triangles);
   } catch (const core::Error& error) {
     throw core::Error(where + error.what());
   }

@@ -2,9 +2,14 @@
 
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
@@ -12,18 +17,20 @@
 #include "mesh_import.h"
 #include "mesh_simplification.h"
 #include "mesh_texture.h"
+#include "vertex_colors.h"
 
 namespace early_fusion::world {
 
 namespace {
 
 constexpr int kMaxNodeDepth = 256;
+constexpr std::uint32_t kWhite = 0xffffffffu;
 
 /// The state of a conversion from assimp's scene to parts, one part for each material.
 struct Conversion {
   const std::string& path;
   const aiScene& scene;
-  Eigen::Vector3d scale;
+  Eigen::Affine3d metres_from_file;
   std::vector<MeshPart> part_of_material;
 };
 
@@ -52,7 +59,7 @@ Vertex convertVertex(const aiMesh& mesh, unsigned index, const Eigen::Affine3d& 
 }
 
 void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3d& node_transform) {
-  const Eigen::Affine3d transform = Eigen::Scaling(conversion.scale) * node_transform;
+  const Eigen::Affine3d transform = conversion.metres_from_file * node_transform;
   const double determinant = transform.linear().determinant();
   if (!std::isfinite(determinant) || determinant == 0) {
     throw core::Error(conversion.path + ": mesh '" + core::excerpt(mesh.mName.C_Str()) +
@@ -68,6 +75,7 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
       throw core::Error(conversion.path + ": vertex " + std::to_string(i) + " of mesh '" +
                         core::excerpt(mesh.mName.C_Str()) + "' is not finite");
     }
+    part.colors.push_back(mesh.HasVertexColors(0) ? packColor(mesh.mColors[0][i]) : kWhite);
   }
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
@@ -87,6 +95,81 @@ void appendNode(Conversion& conversion, const aiNode& node, const Eigen::Affine3
   for (unsigned i = 0; i < node.mNumChildren; ++i) appendNode(conversion, *node.mChildren[i], transform, depth + 1);
 }
 
+/// Adds the backs of all triangles.
+void addSecondSide(MeshPart& part) {
+  const auto count = static_cast<std::uint32_t>(part.vertices.size());
+  const std::vector<std::uint32_t> front = part.indices;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    part.vertices.push_back(part.vertices[i]);
+    part.vertices.back().normal *= -1;
+  }
+  const std::vector<std::uint32_t> colors = part.colors;
+  part.colors.insert(part.colors.end(), colors.begin(), colors.end());
+  for (std::size_t i = 0; i < front.size(); i += 3) {
+    part.indices.insert(part.indices.end(), {count + front[i], count + front[i + 2], count + front[i + 1]});
+  }
+}
+
+template <class Visit>  // (a, b, c): a triangle's corners
+void forEachTriangle(const TexturedMesh& mesh, Visit visit) {
+  for (const MeshPart& part : mesh.parts) {
+    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+      visit(part.vertices[part.indices[i]], part.vertices[part.indices[i + 1]], part.vertices[part.indices[i + 2]]);
+    }
+  }
+}
+
+/// Whether two triangles meet at every edge, in opposite directions.
+bool isClosed(const TexturedMesh& mesh) {
+  std::map<std::array<float, 3>, int> corners;
+  std::map<std::pair<int, int>, int> balance;  // of an edge: its triangles in one direction less those in the other
+  const auto number = [&](const Vertex& vertex) {
+    const Eigen::Vector3f& p = vertex.position;
+    return corners.emplace(std::array<float, 3>{p.x(), p.y(), p.z()}, static_cast<int>(corners.size())).first->second;
+  };
+  const auto add = [&](int from, int to) { balance[std::minmax(from, to)] += from < to ? 1 : -1; };
+  forEachTriangle(mesh, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
+    const int i = number(a), j = number(b), k = number(c);
+    add(i, j);
+    add(j, k);
+    add(k, i);
+  });
+  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+constexpr double kClosed = 1e-3;  // share of the surface that may be missing, and of the volume that is none
+
+/// Turns a closed mesh whose faces point inwards inside out: seen from outside it would be invisible.
+void turnOutwards(TexturedMesh& mesh, const std::string& path) {
+  const Eigen::Vector3d middle = mesh.bounds().center().cast<double>();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the area vectors; 0 if the mesh is closed
+  double area = 0, volume = 0, agreement = 0;     // of the normals with the faces
+  forEachTriangle(mesh, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
+    const Eigen::Vector3d p = a.position.cast<double>() - middle, q = b.position.cast<double>() - middle,
+                          r = c.position.cast<double>() - middle;
+    const Eigen::Vector3d twice = (q - p).cross(r - p);
+    sum += twice / 2;
+    area += twice.norm() / 2;
+    volume += p.dot(q.cross(r)) / 6;
+    agreement += twice.dot((a.normal + b.normal + c.normal).cast<double>());
+  });
+  if (volume >= -kClosed * std::pow(area, 1.5) || sum.norm() > kClosed * area) return;
+  for (MeshPart& part : mesh.parts) {
+    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) std::swap(part.indices[i + 1], part.indices[i + 2]);
+    for (Vertex& vertex : part.vertices) vertex.normal *= agreement > 0 ? -1.f : 1.f;
+  }
+  std::cerr << "early_fusion: " << path << ": its faces point inwards; they are turned\n";
+}
+
+/// glTF's axes are fixed: y up, z to the front.
+Eigen::Affine3d axesOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const bool y_up = extension == ".glb" || extension == ".gltf";
+  return Eigen::Affine3d(Eigen::AngleAxisd(y_up ? EIGEN_PI / 2 : 0., Eigen::Vector3d::UnitX()));
+}
+
 bool hasArea(const TexturedMesh& mesh) {
   for (const MeshPart& part : mesh.parts) {
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
@@ -99,16 +182,42 @@ bool hasArea(const TexturedMesh& mesh) {
   return false;
 }
 
-TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen::Vector3d& scale) {
-  Conversion conversion{path, scene, scale, std::vector<MeshPart>(scene.mNumMaterials)};
+void setMaterial(MeshPart& part, const aiScene& scene, const aiMaterial& material, const std::string& path) {
+  part.texture = readTexture(scene, material, path);
+  part.specular = readSpecular(material);
+  const auto& colors = part.colors;
+  const bool varies =
+      std::any_of(colors.begin(), colors.end(), [&](std::uint32_t color) { return color != colors[0]; });
+  if (hasImage(material)) {
+    part.colors.clear();
+  } else if (!varies) {
+    if (colors[0] != kWhite) part.texture = uniformTexture(colors[0]);
+    part.colors.clear();
+  }
+}
+
+bool isTwoSided(const aiMaterial& material) {
+  int two_sided = 0;
+  return material.Get(AI_MATKEY_TWOSIDED, two_sided) == AI_SUCCESS && two_sided != 0;
+}
+
+TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen::Affine3d& metres_from_file) {
+  Conversion conversion{path, scene, metres_from_file * axesOf(path), std::vector<MeshPart>(scene.mNumMaterials)};
   appendNode(conversion, *scene.mRootNode, Eigen::Affine3d::Identity(), 0);
   TexturedMesh mesh;
+  std::vector<bool> two_sided;  // by part
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     MeshPart& part = conversion.part_of_material[i];
     if (part.indices.empty()) continue;
-    part.texture = readTexture(scene, *scene.mMaterials[i], path);
-    part.specular = readSpecular(*scene.mMaterials[i]);
+    setMaterial(part, scene, *scene.mMaterials[i], path);
     mesh.parts.push_back(std::move(part));
+    two_sided.push_back(isTwoSided(*scene.mMaterials[i]));
+  }
+  turnOutwards(mesh, path);
+  if (!isClosed(mesh)) {  // otherwise the backs are never seen
+    for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+      if (two_sided[i]) addSecondSide(mesh.parts[i]);
+    }
   }
   return mesh;
 }
@@ -129,16 +238,16 @@ Eigen::AlignedBox3f TexturedMesh::bounds() const {
   return box;
 }
 
-TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles) {
+TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles) {
   Assimp::Importer importer;
-  TexturedMesh mesh = core::namingOutOfMemory(path, [&] { return convert(path, importMesh(importer, path), scale); });
+  TexturedMesh mesh =
+      core::namingOutOfMemory(path, [&] { return convert(path, importMesh(importer, path), metres_from_file); });
   const std::size_t triangles = mesh.triangleCount();
   if (triangles == 0) throw core::Error(path + ": has no triangles; export a surface mesh");
   if (!hasArea(mesh)) throw core::Error(path + ": all its triangles have no area; export a surface mesh");
-  simplify(mesh, max_triangles);
-  if (mesh.triangleCount() < triangles) {
-    std::cerr << "early_fusion: " << path << ": " << triangles << " triangles simplified to " << mesh.triangleCount()
-              << "\n";
+  simplify(mesh, max_triangles, path);
+  for (MeshPart& part : mesh.parts) {
+    if (!part.colors.empty()) bakeVertexColors(part);
   }
   return mesh;
 }

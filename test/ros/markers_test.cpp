@@ -36,7 +36,8 @@ TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {
     EXPECT_EQ(marker.mesh_resource, meshUrl(object.mesh_file));
     // A corner of the file, through the marker's scale and pose, is the corner of the mesh in the world.
     const Eigen::Vector3d in_object = object.mesh.parts[0].vertices[0].position.cast<double>();
-    const Eigen::Vector3d in_file = (in_object + object.mesh_origin).cwiseQuotient(object.mesh_scale);
+    const Eigen::Vector3d in_file =
+        (object.mesh_rotation.inverse() * (in_object + object.mesh_origin)).cwiseQuotient(object.mesh_scale);
     const Eigen::Quaterniond rotation(marker.pose.orientation.w, marker.pose.orientation.x, marker.pose.orientation.y,
                                       marker.pose.orientation.z);
     const Eigen::Vector3d scale(marker.scale.x, marker.scale.y, marker.scale.z);
@@ -45,6 +46,30 @@ TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {
         Eigen::Vector3d(marker.pose.position.x, marker.pose.position.y, marker.pose.position.z);
     EXPECT_LT((shown - sim::worldFromObject(*world_, instance) * in_object).norm(), 1e-6);
   }
+}
+
+TEST_F(MarkersTest, AFileThatRvizReadsOtherwiseIsShownAsTriangles) {
+  world::World world = *world_;
+  const int item = episode_.setup().instances[0].item;
+  std::vector<world::Object> objects;
+  for (int i = 0; i < world.objects.size(); ++i) objects.push_back(world.objects[i]);
+  objects[item].mesh_file = "thing.glb";
+  world.objects = world::ObjectSet(objects);
+  const visualization_msgs::MarkerArray array = objectMarkers(world, episode_, {});
+  const auto marker =
+      std::find_if(array.markers.begin(), array.markers.end(),
+                   [](const visualization_msgs::Marker& one) { return one.ns == "objects" && one.id == 0; });
+  ASSERT_NE(marker, array.markers.end());
+  EXPECT_EQ(marker->type, visualization_msgs::Marker::TRIANGLE_LIST);
+  ASSERT_EQ(marker->points.size(), 3 * objects[item].mesh.triangleCount());
+  ASSERT_EQ(marker->colors.size(), marker->points.size());
+  const world::MeshPart& part = objects[item].mesh.parts[0];
+  const world::Vertex& corner = part.vertices[part.indices[4]];
+  EXPECT_FLOAT_EQ(marker->points[4].z, corner.position.z());
+  EXPECT_EQ(marker->colors[4].a, 1.f);
+  const Eigen::Vector3d place = sim::worldFromObject(world, episode_.setup().instances[0]).translation();
+  EXPECT_NEAR(marker->pose.position.x, place.x(), 1e-9);
+  EXPECT_NEAR(marker->pose.position.y, place.y(), 1e-9);
 }
 
 TEST_F(MarkersTest, LeaveOutWhatWasTakenAway) {

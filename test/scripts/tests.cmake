@@ -16,3 +16,6 @@ add_test(NAME scripts_isolated_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/isolated_test.py
                  ${PROJECT_SOURCE_DIR} $<TARGET_FILE:simulator_node>)
 set_tests_properties(scripts_isolated_test PROPERTIES SKIP_RETURN_CODE 77)
+add_test(NAME scripts_installed_package_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/installed_package_test.py
+                 ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})

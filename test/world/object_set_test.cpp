@@ -73,7 +73,7 @@ TEST(ObjectSet, NamesFileLineAndKeyOfAMistake) {
   expectError("objects:\n  - {name: box}\n", {"objects.yaml:2", "needs a mesh"});
   expectError("objects:\n  - {name: box, mesh: [box.obj]}\n", {"objects.yaml:2", "needs a mesh"});
   expectError("objects:\n  - {name: box, mesh: box.obj, size: 2}\n",
-              {"objects.yaml:2", "unknown key 'size'", "mesh, name, scale"});
+              {"objects.yaml:2", "unknown key 'size'", "mesh, name, rotation, scale"});
   expectError("objects:\n  - {name: box, mesh: box.obj, name: can}\n", {"objects.yaml:2", "name is given twice"});
   expectError("objects:\n  - {name: box, mesh: box.obj}\nobjects: []\n", {"objects.yaml:3", "objects is given twice"});
   expectError("objects:\n  - {name: box, mesh: none.obj}\n", {"objects.yaml:2", "object 'box'", "none.obj"});
@@ -85,6 +85,27 @@ TEST(ObjectSet, RefusesAScaleThatIsNone) {
   for (const char* scale : {"0", "-1", "big", "[1, 2]", "[1, 1, 0]", "[1, 1, x]", "{x: 1}", ".nan", ".inf"}) {
     expectError("objects:\n  - {name: box, mesh: box.obj, scale: " + std::string(scale) + "}\n",
                 {"objects.yaml:2", "scale is '"});
+  }
+}
+
+TEST(ObjectSet, TurnsAMeshAsTheFileSays) {
+  const TestFolder folder;
+  folder.write("off.obj", "v 1 2 3\nv 1.1 2 3\nv 1 2.2 3\nv 1 2 3.3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const auto load = [&](const std::string& rotation) {
+    return ObjectSet::load(
+        folder.write("objects.yaml", "objects: [{name: off, mesh: off.obj, rotation: " + rotation + "}]\n"), 2000);
+  };
+  expectBounds(load("[90, 0, 0]")[0], 0.1, 0.3, 0.2);
+  expectBounds(load("[90, 0, 90]")[0], 0.3, 0.1, 0.2);  // about the fixed x axis, then about the fixed z axis
+  const Object object = load("[30, 40, 50]")[0];
+  const Eigen::Vector3d corner = object.mesh_rotation * Eigen::Vector3d(1.1, 2, 3) - object.mesh_origin;
+  bool found = false;
+  for (const Vertex& vertex : object.mesh.parts[0].vertices)
+    found |= (vertex.position.cast<double>() - corner).norm() < 1e-6;
+  EXPECT_TRUE(found);
+  for (const std::string bad : {"[90, 0]", "90", "[a, 0, 0]", "[400, 0, 0]", "[.nan, 0, 0]", "{x: 1}"}) {
+    const std::string error = errorOf([&] { load(bad); });
+    EXPECT_NE(error.find("objects.yaml:1: rotation is '"), std::string::npos) << error;
   }
 }
 

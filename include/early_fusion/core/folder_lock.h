@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -7,12 +8,17 @@ namespace early_fusion::core {
 
 class Descriptor;
 
-/// The right of one process to write in a folder: a lock on a file in it (flock), which ends with the process, however
-/// it ends. The file stays.
+/// The right to write in a folder: a lock on its file `writer.lock` (flock), which ends with its holder, however that
+/// ends. The file stays.
 class FolderLock {
  public:
-  /// Makes the folder if it is missing. @throws Error naming the folder and the process that holds the lock.
-  explicit FolderLock(const std::string& folder);
+  enum class Holder { kThisProcess, kThisProcessAndChildren };
+
+  /// Makes the folder if it is missing. @param patience how long it waits for another holder: the children of one that
+  /// has just died may live a little longer.
+  /// @throws Error naming the folder and the process that holds the lock.
+  explicit FolderLock(const std::string& folder, Holder holder = Holder::kThisProcess,
+                      std::chrono::milliseconds patience = std::chrono::milliseconds(0));
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/eigen_alignment.h"
 #include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::learning {

@@ -28,7 +28,7 @@ void checkSession(const SessionOptions& options, const world::World& world);
 /// clock.
 ///
 /// The folder holds checkpoint.safetensors (after every round), weights.safetensors (the current policy),
-/// curve.csv, scores.csv, options.yaml, session.lock (held as long as this object lives) and, at the end, result.json.
+/// curve.csv, scores.csv, options.yaml, writer.lock (held as long as this object lives) and, at the end, result.json.
 class TrainingSession {
  public:
   /// Starts a session. With options.resume, it continues from the run folder's checkpoint if there is one.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/eigen_alignment.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/model/observation.h"
 #include "early_fusion/model/policy_options.h"

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 namespace early_fusion::nn {
 
 struct AdamOptions {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 namespace early_fusion::nn {
 
 /// One named tensor inside the flat vectors of Parameters, row-major.

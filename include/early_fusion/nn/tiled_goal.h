@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "early_fusion/core/eigen_alignment.h"
 #include "early_fusion/nn/pooling.h"
 
 namespace early_fusion::nn {

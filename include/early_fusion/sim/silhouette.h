@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 namespace early_fusion::sim {
 
 /// The outline of a convex hull seen from a point: a convex polygon on the unit sphere about the eye.

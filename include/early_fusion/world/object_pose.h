@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 namespace early_fusion::world {
 
 /// An object of the object set and its pose.

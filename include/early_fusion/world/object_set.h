@@ -15,7 +15,9 @@ struct Object {
   std::string name;
   TexturedMesh mesh;
   std::string mesh_file;
-  Eigen::Vector3d mesh_scale;         ///< coordinates of `mesh` = coordinates in the file * mesh_scale - mesh_origin
+  /// Coordinates of `mesh` = mesh_rotation * (mesh_scale * coordinates in the file) - mesh_origin.
+  Eigen::Vector3d mesh_scale;
+  Eigen::Quaterniond mesh_rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d mesh_origin;        ///< [m]
   std::vector<Eigen::Vector3d> hull;  ///< corners of the convex hull for placement and the cone [m]
 };
@@ -28,7 +30,8 @@ class ObjectSet {
   /// A set of the given objects. @throws Error if a name is empty or is listed twice.
   explicit ObjectSet(std::vector<Object> objects) : objects_(std::move(objects)), vocabulary_(namesOf(objects_)) {}
 
-  /// Reads `objects: [{name, mesh, scale}, ...]`; mesh paths are relative to the YAML file.
+  /// Reads `objects: [{name, mesh, scale, rotation}, ...]`; mesh paths are relative to the YAML file, or package://,
+  /// model:// and file:// URLs.
   /// @throws Error naming file, line, key and value.
   static ObjectSet load(const std::string& yaml_file, int max_triangles);
 

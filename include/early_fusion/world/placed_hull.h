@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 class btConvexHullShape;
 
 namespace early_fusion::world {

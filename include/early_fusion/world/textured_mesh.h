@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/eigen_alignment.h"
+
 namespace early_fusion::world {
 
 struct Vertex {
@@ -23,6 +25,7 @@ struct Texture {
 struct MeshPart {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> colors;  ///< of the vertices, 0xAABBGGRR; loadTexturedMesh() turns them into the texture
   Texture texture;
   float specular = 0.f;  ///< strength of the highlight, [0, 1]
 };
@@ -34,10 +37,13 @@ struct TexturedMesh {
   Eigen::AlignedBox3f bounds() const;
 };
 
-/// Loads any mesh that assimp reads, with its diffuse textures or colours. Computes smooth normals if the file has
-/// none. A mesh with more than `max_triangles` is simplified to that number, with a note on stderr.
-/// @param scale converts the file's coordinates to metres.
-/// @throws Error naming `path` and the fault (no triangles, unreadable texture, numbers that are not finite).
-TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Vector3d& scale, int max_triangles);
+/// Loads any mesh that assimp reads, with its diffuse textures, its vertex colours where it has no texture, or its plain
+/// colours. Computes smooth normals if the file has none. glTF files are turned, because their y points up. Two-sided
+/// materials of open meshes get a second side, and closed meshes whose faces point inwards are turned. A mesh with more
+/// than `max_triangles` is simplified to that number. Notes on stderr say what was simplified or turned, and what cannot
+/// be read: instead of such a texture, the plain colour is drawn.
+/// @param metres_from_file converts the file's coordinates to metres.
+/// @throws Error naming `path` and the fault (no triangles, numbers that are not finite).
+TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles);
 
 }  // namespace early_fusion::world

@@ -1,5 +1,8 @@
 #include "early_fusion/ros/simulator/markers.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "early_fusion/core/file.h"
@@ -12,14 +15,59 @@ namespace {
 constexpr double kNameHeight = 0.03;  // [m], of a capital letter
 constexpr double kNameGap = 0.02;     // [m], between an object and its name
 
+/// Whether rviz draws the file as the simulator does: no vertex colours, no nodes or axes that it treats otherwise.
+bool isReadByRviz(const std::string& mesh_file) {
+  std::string extension = std::filesystem::path(mesh_file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".obj" || extension == ".stl" || extension == ".dae";
+}
+
+std_msgs::ColorRGBA colorAt(const world::Texture& texture, const Eigen::Vector2f& uv) {
+  const auto texel = [&](float coordinate) {
+    const auto at = static_cast<int>((coordinate - std::floor(coordinate)) * static_cast<float>(texture.size));
+    return std::min(at, texture.size - 1);
+  };
+  const std::uint32_t color = texture.texels[static_cast<std::size_t>(texel(uv.y())) * texture.size + texel(uv.x())];
+  std_msgs::ColorRGBA message;
+  message.r = static_cast<float>(color & 255u) / 255.f;
+  message.g = static_cast<float>(color >> 8 & 255u) / 255.f;
+  message.b = static_cast<float>(color >> 16 & 255u) / 255.f;
+  message.a = 1.f;
+  return message;
+}
+
+/// The simulator's own triangles, each corner in the colour of its texture there.
+visualization_msgs::Marker triangleMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
+  visualization_msgs::Marker marker;
+  marker.ns = "objects";
+  marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
+  marker.pose = poseMessage(world_from_object);
+  marker.scale.x = marker.scale.y = marker.scale.z = 1;
+  marker.color.a = 1.f;
+  for (const world::MeshPart& part : object.mesh.parts) {
+    for (const std::uint32_t index : part.indices) {
+      const world::Vertex& vertex = part.vertices[index];
+      marker.points.emplace_back();
+      marker.points.back().x = vertex.position.x();
+      marker.points.back().y = vertex.position.y();
+      marker.points.back().z = vertex.position.z();
+      marker.colors.push_back(colorAt(part.texture, vertex.uv));
+    }
+  }
+  return marker;
+}
+
 visualization_msgs::Marker meshMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
+  if (!isReadByRviz(object.mesh_file)) return triangleMarker(object, world_from_object);
   visualization_msgs::Marker marker;
   marker.ns = "objects";
   marker.type = visualization_msgs::Marker::MESH_RESOURCE;
   marker.mesh_resource = meshUrl(object.mesh_file);
   marker.mesh_use_embedded_materials = true;
-  // rviz scales the file's coordinates and then applies the pose. The object set moves its scaled mesh to the origin.
-  marker.pose = poseMessage(world_from_object * Eigen::Translation3d(-object.mesh_origin));
+  // rviz scales the file's coordinates and then applies the pose. The object set turns its scaled mesh and moves it to
+  // the origin.
+  marker.pose = poseMessage(world_from_object * Eigen::Translation3d(-object.mesh_origin) * object.mesh_rotation);
   marker.scale.x = object.mesh_scale.x();
   marker.scale.y = object.mesh_scale.y();
   marker.scale.z = object.mesh_scale.z();
