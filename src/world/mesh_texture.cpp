@@ -147,9 +147,10 @@ cv::Mat readImage(const aiScene& scene, const std::string& name, const std::stri
     if (image.empty()) throw core::Error(where + " cannot be decoded");
     return image;
   }
-  const std::string file = resourcePath(mesh_path, name);
+  std::string file;
   const std::string bytes = [&] {
     try {
+      file = resourcePath(mesh_path, name);
       return core::readFile(file, kMaxTextureBytes);
     } catch (const core::Error& error) {
       throw core::Error(mesh_path + ": its texture cannot be read: " + error.what());

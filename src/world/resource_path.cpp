@@ -89,11 +89,11 @@ std::string resourcePath(const std::string& base_file, const std::string& name) 
     folder = modelFolder(folder_name);
     variable = "GAZEBO_MODEL_PATH";
   } else {
-    throw core::Error(base_file + ": cannot find '" + core::excerpt(path) +
-                      "': write package://, model://, file:// or a path relative to this file");
+    throw core::Error("cannot find '" + core::excerpt(path) +
+                      "': write package://, model://, file:// or a path relative to " + base_file);
   }
   if (folder.empty()) {
-    throw core::Error(base_file + ": cannot find '" + core::excerpt(path) + "': there is no " + scheme + " '" +
+    throw core::Error("cannot find '" + core::excerpt(path) + "': there is no " + scheme + " '" +
                       core::excerpt(folder_name) + "' in the folders of " + variable);
   }
   return (folder / fs::path(rest.substr(std::min(folder_name.size() + 1, rest.size())))).lexically_normal().string();

@@ -25,8 +25,12 @@ class AttentionMapTest : public testing::TestWithParam<std::string> {};
 TEST_P(AttentionMapTest, TheHeadSeesWhatIsAttendedToAndTheEmbedding) {
   const auto policy = makeSmall(attentionOptions(GetParam()));
   for (const nn::TensorSlice& slice : policy->parameters().parameterSlices()) {
-    if (slice.name == "hidden.weight") EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 32}));
-    if (slice.name == "block1.conv.weight") EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 11, 3, 3}));
+    if (slice.name == "hidden.weight") {
+      EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 32}));
+    }
+    if (slice.name == "block1.conv.weight") {
+      EXPECT_EQ(slice.shape, (std::vector<std::int64_t>{16, 11, 3, 3}));
+    }
   }
 }
 
@@ -73,7 +77,9 @@ TEST_P(AttentionMapTest, RowZeroIsOnTopAndColumnZeroLeft) {
   // The upper right corner has changed. A region sees 15 pixels beyond its own 16. The softmax scales all others alike.
   for (int row = 0; row < kRegions; ++row) {
     for (int column = 0; column < kRegions; ++column) {
-      if (row >= 2 || column <= 3) EXPECT_NEAR(change(row, column) / change(5, 0), 1, 1e-4) << row << ", " << column;
+      if (row >= 2 || column <= 3) {
+        EXPECT_NEAR(change(row, column) / change(5, 0), 1, 1e-4) << row << ", " << column;
+      }
     }
   }
   EXPECT_GT(std::abs(change(0, 5) / change(5, 0) - 1), 1e-3);

@@ -187,7 +187,7 @@ TEST(World, SaysWhichMeshOfTheKitchenIsMissing) {
   };
   expectError("kitchen.urdf", with_mesh("none.obj"), {"kitchen.urdf: link 'counter'", "none.obj"});
   expectError("kitchen.urdf", with_mesh("package://another/none.obj"),
-              {"kitchen.urdf: link 'counter'", "package://another/none.obj", "package://early_fusion/"});
+              {"kitchen.urdf: link 'counter'", "package://another/none.obj", "ROS_PACKAGE_PATH"});
 }
 
 }  // namespace
