@@ -34,8 +34,8 @@ class InstalledPackage(unittest.TestCase):
             environment.pop("EARLY_FUSION_SHARE", None)
             source = os.path.join(ROOT, "test", "scripts", "library_user")
             run("cmake", "-S", source, "-B", build, "-DCMAKE_BUILD_TYPE=Release", env=environment)
-            cache = open(os.path.join(build, "CMakeCache.txt")).read()
-            self.assertIn(f"early_fusion_DIR:PATH={install}/share/early_fusion/cmake", cache)
+            with open(os.path.join(build, "CMakeCache.txt")) as cache:
+                self.assertIn(f"early_fusion_DIR:PATH={install}/share/early_fusion/cmake", cache.read())
             run("cmake", "--build", build, env=environment)
             [program] = [os.path.join(place, "score") for place, _, names in os.walk(build) if "score" in names]
             linked = run("ldd", program, env=environment)
