@@ -28,5 +28,6 @@ for tool in unshare ip; do
   }
 done
 export PATH="$PATH:/usr/sbin:/sbin" ROS_IP=127.0.0.1
+[[ "${ROS_MASTER_URI:-}" =~ ^http://(127\.0\.0\.1|localhost): ]] || export ROS_MASTER_URI=http://127.0.0.1:11311
 unset ROS_HOSTNAME
 exec unshare --user --map-root-user --net bash -c 'ip link set lo up && exec "$@"' isolated "$@"

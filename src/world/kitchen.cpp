@@ -77,7 +77,7 @@ TexturedMesh meshOf(const urdf::GeometrySharedPtr& shape, std::uint32_t colour, 
   }
   const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
   return loadTexturedMesh(resourcePath(urdf_file, mesh.filename), Eigen::Affine3d(Eigen::Scaling(toEigen(mesh.scale))),
-                          max_triangles);
+                          max_triangles, MeshPurpose::kSurroundings);
 }
 
 HorizontalRectangle topOf(const urdf::Link& link, const Eigen::Isometry3d& world_from_link, const std::string& where) {

@@ -2,6 +2,7 @@
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +16,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <type_traits>
+#include <vector>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
@@ -43,6 +46,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     Assimp::IOStream* stream = plausible(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
     if (stream == nullptr && missing_.empty()) missing_ = file;
+    // Without the material file that an OBJ file names, assimp takes the one of its own name.
+    if (stream != nullptr && fs::path(file).extension() == ".mtl") missing_.clear();
     return stream;
   }
 
@@ -91,6 +96,35 @@ void checkScene(const std::string& path, const aiScene& scene) {
   if (!has_surface) throw core::Error(path + ": has only points or lines, no triangles; export a surface mesh");
 }
 
+/// Gives each face its own vertices. Assimp keeps sharp edges only between faces that share none, so a PLY box of eight
+/// vertices would get round corners.
+void splitVertices(aiMesh& mesh) {
+  std::vector<unsigned> corners;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    aiFace& face = mesh.mFaces[i];
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      corners.push_back(face.mIndices[k]);
+      face.mIndices[k] = static_cast<unsigned>(corners.size()) - 1;
+    }
+  }
+  const auto split = [&](auto*& elements) {
+    if (elements == nullptr) return;
+    auto* result = new std::remove_reference_t<decltype(*elements)>[corners.size()];  // the scene deletes it
+    for (std::size_t i = 0; i < corners.size(); ++i) result[i] = elements[corners[i]];
+    delete[] elements;
+    elements = result;
+  };
+  split(mesh.mVertices);
+  for (auto& colors : mesh.mColors) split(colors);
+  for (auto& coordinates : mesh.mTextureCoords) split(coordinates);
+  mesh.mNumVertices = static_cast<unsigned>(corners.size());
+}
+
+/// Whether a mesh lacks normals and has nothing that names its vertices.
+bool canSplitVertices(const aiMesh& mesh) {
+  return !mesh.HasNormals() && !mesh.HasTangentsAndBitangents() && !mesh.HasBones() && mesh.mNumAnimMeshes == 0;
+}
+
 /// Reads the file, checks what assimp gives, and only then lets it compute with the indices.
 /// @param missing the first file that the mesh names and that cannot be read.
 const aiScene& import(Assimp::Importer& importer, const std::string& path, std::string& missing) {
@@ -109,6 +143,9 @@ const aiScene& import(Assimp::Importer& importer, const std::string& path, std::
   const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr) fail();
   checkScene(path, *scene);
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+    if (canSplitVertices(*scene->mMeshes[i])) splitVertices(*scene->mMeshes[i]);  // the importer's own, not constant
+  }
   scene = importer.ApplyPostProcessing(kAfterImport);
   if (scene == nullptr || scene->mRootNode == nullptr) fail();
   return *scene;
@@ -131,7 +168,9 @@ void lower(int resource, rlim_t value) {
 }
 
 /// Imports the file in this process, a child, and ends it.
-[[noreturn]] void tryInChild(const std::string& path) {
+[[noreturn]] void tryInChild(const std::string& path, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it has the parent's locks
+  if (::getppid() != parent) ::_exit(0);
   lower(RLIMIT_CORE, 0);
   lower(RLIMIT_CPU, kMaxProcessorSec);
   lower(RLIMIT_AS, mappedBytes() + kMaxMemoryBytes);
@@ -149,9 +188,10 @@ void lower(int resource, rlim_t value) {
 
 /// @throws Error if a child process that imports the file crashes or runs out of time.
 void checkInChild(const std::string& path) {
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child < 0) throw core::Error(path + ": cannot start a process that reads the mesh");
-  if (child == 0) tryInChild(path);
+  if (child == 0) tryInChild(path, parent);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) return;  // another part of the program waits for all children: the result is unknown
@@ -190,7 +230,7 @@ const aiScene& importMesh(Assimp::Importer& importer, const std::string& path) {
   }
   std::string missing;
   const aiScene& scene = import(importer, path, missing);
-  importer.SetIOHandler(nullptr);  // the other one refers to `missing`
+  importer.SetIOHandler(new Assimp::DefaultIOSystem);  // the other one, which this deletes, refers to `missing`
   if (!missing.empty()) {
     std::cerr << "early_fusion: " << path << ": " << missing
               << ", which it names, cannot be read; drawn without its materials\n";

@@ -39,12 +39,6 @@ std::string imageName(const aiMaterial& material) {
   return "";
 }
 
-Texture plainTexture(const aiMaterial& material) {
-  aiColor4D color(0.8f, 0.8f, 0.8f, 1.f);
-  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) material.Get(AI_MATKEY_BASE_COLOR, color);
-  return uniformTexture(packColor(color));
-}
-
 /// Uses an area filter to shrink a texture, so that fine print becomes grey instead of noise.
 Texture squareTexture(const cv::Mat& bgr) {
   const int longest = std::max(bgr.cols, bgr.rows);
@@ -166,9 +160,17 @@ cv::Mat readImage(const aiScene& scene, const std::string& name, const std::stri
 
 }  // namespace
 
-std::uint32_t packColor(const aiColor4D& color) {
-  const auto byte = [](float value) {
-    return static_cast<std::uint32_t>(std::lround(255.f * std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f)));
+aiColor4D plainColor(const aiMaterial& material) {
+  aiColor4D color(0.8f, 0.8f, 0.8f, 1.f);
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) material.Get(AI_MATKEY_BASE_COLOR, color);
+  return color;
+}
+
+std::uint32_t packColor(const aiColor4D& color, bool linear) {
+  const auto byte = [linear](float value) {
+    float shown = std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f);
+    if (linear) shown = shown <= 0.0031308f ? 12.92f * shown : 1.055f * std::pow(shown, 1 / 2.4f) - 0.055f;  // sRGB
+    return static_cast<std::uint32_t>(std::lround(255.f * shown));
   };
   return byte(color.r) | byte(color.g) << 8 | byte(color.b) << 16 | 0xff000000u;
 }
@@ -179,14 +181,15 @@ Texture uniformTexture(std::uint32_t color) {
   return {kUniformSize, std::vector<std::uint32_t>(kUniformSize * kUniformSize, color)};
 }
 
-Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path) {
+Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path, bool linear) {
   const std::string name = imageName(material);
-  if (name.empty()) return plainTexture(material);
+  const auto plain = [&] { return uniformTexture(packColor(plainColor(material), linear)); };
+  if (name.empty()) return plain();
   try {
     return squareTexture(readImage(scene, name, mesh_path));
   } catch (const core::Error& error) {
     std::cerr << "early_fusion: " << error.what() << "; drawn in its plain colour\n";
-    return plainTexture(material);
+    return plain();
   }
 }
 

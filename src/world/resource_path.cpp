@@ -38,7 +38,8 @@ fs::path findPackage(const fs::path& folder, const std::string& name) {
   if (isThere(folder / name / "package.xml")) return folder / name;
   if (folder.filename() == name && isThere(folder / "package.xml")) return folder;
   std::error_code unreadable;
-  for (fs::recursive_directory_iterator it(folder, unreadable), end; !unreadable && it != end;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator it(folder, kOptions, unreadable), end; !unreadable && it != end;
        it.increment(unreadable)) {
     if (it.depth() >= kMaxPackageDepth || isThere(it->path() / "package.xml")) it.disable_recursion_pending();
     if (it->path().filename() == name && isThere(it->path() / "package.xml")) return it->path();
@@ -78,7 +79,7 @@ std::string resourcePath(const std::string& base_file, const std::string& name) 
   const std::size_t scheme_end = path.find("://");
   if (scheme_end == std::string::npos) return core::resolvePath(base_file, path);
   const std::string scheme = path.substr(0, scheme_end), rest = path.substr(scheme_end + 3);
-  if (scheme == "file") return rest;
+  if (scheme == "file") return core::resolvePath(base_file, rest);
   const std::string folder_name = rest.substr(0, rest.find('/'));
   fs::path folder;
   std::string variable;
@@ -96,7 +97,7 @@ std::string resourcePath(const std::string& base_file, const std::string& name) 
     throw core::Error("cannot find '" + core::excerpt(path) + "': there is no " + scheme + " '" +
                       core::excerpt(folder_name) + "' in the folders of " + variable);
   }
-  return (folder / fs::path(rest.substr(std::min(folder_name.size() + 1, rest.size())))).lexically_normal().string();
+  return (folder / fs::path(rest.substr(folder_name.size())).relative_path()).lexically_normal().string();
 }
 
 }  // namespace early_fusion::world

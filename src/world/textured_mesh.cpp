@@ -24,7 +24,6 @@ namespace early_fusion::world {
 namespace {
 
 constexpr int kMaxNodeDepth = 256;
-constexpr std::uint32_t kWhite = 0xffffffffu;
 
 /// The state of a conversion from assimp's scene to parts, one part for each material.
 struct Conversion {
@@ -33,6 +32,18 @@ struct Conversion {
   Eigen::Affine3d metres_from_file;
   std::vector<MeshPart> part_of_material;
 };
+
+bool isGltf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".glb" || extension == ".gltf";
+}
+
+/// glTF's axes are fixed: y up, z to the front.
+Eigen::Affine3d axesOf(const std::string& path) {
+  return Eigen::Affine3d(Eigen::AngleAxisd(isGltf(path) ? EIGEN_PI / 2 : 0., Eigen::Vector3d::UnitX()));
+}
 
 Eigen::Affine3d toEigen(const aiMatrix4x4& m) {
   Eigen::Affine3d transform;
@@ -58,6 +69,12 @@ Vertex convertVertex(const aiMesh& mesh, unsigned index, const Eigen::Affine3d& 
   return vertex;
 }
 
+/// In a glTF file, vertex colours multiply the plain colour; in others, they replace it.
+std::uint32_t vertexColor(const aiColor4D& color, const aiColor4D& plain, bool gltf) {
+  if (!gltf) return packColor(color, false);
+  return packColor(aiColor4D(color.r * plain.r, color.g * plain.g, color.b * plain.b, 1.f), true);
+}
+
 void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3d& node_transform) {
   const Eigen::Affine3d transform = conversion.metres_from_file * node_transform;
   const double determinant = transform.linear().determinant();
@@ -69,13 +86,16 @@ void appendMesh(Conversion& conversion, const aiMesh& mesh, const Eigen::Affine3
   const Eigen::Matrix3d normal_transform = transform.linear().inverse().transpose();
   MeshPart& part = conversion.part_of_material[mesh.mMaterialIndex];
   const auto first = static_cast<std::uint32_t>(part.vertices.size());
+  const bool gltf = isGltf(conversion.path);
+  const aiColor4D plain = plainColor(*conversion.scene.mMaterials[mesh.mMaterialIndex]);
+  const std::uint32_t plain_color = packColor(plain, gltf);
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     part.vertices.push_back(convertVertex(mesh, i, transform, normal_transform));
     if (!part.vertices.back().position.allFinite() || !part.vertices.back().uv.allFinite()) {
       throw core::Error(conversion.path + ": vertex " + std::to_string(i) + " of mesh '" +
                         core::excerpt(mesh.mName.C_Str()) + "' is not finite");
     }
-    part.colors.push_back(mesh.HasVertexColors(0) ? packColor(mesh.mColors[0][i]) : kWhite);
+    part.colors.push_back(mesh.HasVertexColors(0) ? vertexColor(mesh.mColors[0][i], plain, gltf) : plain_color);
   }
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
@@ -127,7 +147,9 @@ bool isClosed(const TexturedMesh& mesh) {
     const Eigen::Vector3f& p = vertex.position;
     return corners.emplace(std::array<float, 3>{p.x(), p.y(), p.z()}, static_cast<int>(corners.size())).first->second;
   };
-  const auto add = [&](int from, int to) { balance[std::minmax(from, to)] += from < to ? 1 : -1; };
+  const auto add = [&](int from, int to) {
+    if (from != to) balance[std::minmax(from, to)] += from < to ? 1 : -1;
+  };
   forEachTriangle(mesh, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
     const int i = number(a), j = number(b), k = number(c);
     add(i, j);
@@ -161,15 +183,6 @@ void turnOutwards(TexturedMesh& mesh, const std::string& path) {
   std::cerr << "early_fusion: " << path << ": its faces point inwards; they are turned\n";
 }
 
-/// glTF's axes are fixed: y up, z to the front.
-Eigen::Affine3d axesOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  const bool y_up = extension == ".glb" || extension == ".gltf";
-  return Eigen::Affine3d(Eigen::AngleAxisd(y_up ? EIGEN_PI / 2 : 0., Eigen::Vector3d::UnitX()));
-}
-
 bool hasArea(const TexturedMesh& mesh) {
   for (const MeshPart& part : mesh.parts) {
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
@@ -183,7 +196,7 @@ bool hasArea(const TexturedMesh& mesh) {
 }
 
 void setMaterial(MeshPart& part, const aiScene& scene, const aiMaterial& material, const std::string& path) {
-  part.texture = readTexture(scene, material, path);
+  part.texture = readTexture(scene, material, path, isGltf(path));
   part.specular = readSpecular(material);
   const auto& colors = part.colors;
   const bool varies =
@@ -191,7 +204,7 @@ void setMaterial(MeshPart& part, const aiScene& scene, const aiMaterial& materia
   if (hasImage(material)) {
     part.colors.clear();
   } else if (!varies) {
-    if (colors[0] != kWhite) part.texture = uniformTexture(colors[0]);
+    part.texture = uniformTexture(colors[0]);
     part.colors.clear();
   }
 }
@@ -201,7 +214,8 @@ bool isTwoSided(const aiMaterial& material) {
   return material.Get(AI_MATKEY_TWOSIDED, two_sided) == AI_SUCCESS && two_sided != 0;
 }
 
-TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen::Affine3d& metres_from_file) {
+TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen::Affine3d& metres_from_file,
+                     MeshPurpose purpose) {
   Conversion conversion{path, scene, metres_from_file * axesOf(path), std::vector<MeshPart>(scene.mNumMaterials)};
   appendNode(conversion, *scene.mRootNode, Eigen::Affine3d::Identity(), 0);
   TexturedMesh mesh;
@@ -213,8 +227,9 @@ TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen:
     mesh.parts.push_back(std::move(part));
     two_sided.push_back(isTwoSided(*scene.mMaterials[i]));
   }
-  turnOutwards(mesh, path);
-  if (!isClosed(mesh)) {  // otherwise the backs are never seen
+  if (purpose == MeshPurpose::kObject) turnOutwards(mesh, path);
+  const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
+  if (any && !isClosed(mesh)) {  // the backs of a closed mesh are never seen
     for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
       if (two_sided[i]) addSecondSide(mesh.parts[i]);
     }
@@ -238,10 +253,11 @@ Eigen::AlignedBox3f TexturedMesh::bounds() const {
   return box;
 }
 
-TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles) {
+TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles,
+                              MeshPurpose purpose) {
   Assimp::Importer importer;
-  TexturedMesh mesh =
-      core::namingOutOfMemory(path, [&] { return convert(path, importMesh(importer, path), metres_from_file); });
+  TexturedMesh mesh = core::namingOutOfMemory(
+      path, [&] { return convert(path, importMesh(importer, path), metres_from_file, purpose); });
   const std::size_t triangles = mesh.triangleCount();
   if (triangles == 0) throw core::Error(path + ": has no triangles; export a surface mesh");
   if (!hasArea(mesh)) throw core::Error(path + ": all its triangles have no area; export a surface mesh");

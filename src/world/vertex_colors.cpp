@@ -66,6 +66,12 @@ std::uint32_t packed(const Eigen::Array4f& color) {
   return value;
 }
 
+std::uint32_t meanColor(const std::vector<std::uint32_t>& colors) {
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  for (const std::uint32_t color : colors) sum += unpacked(color).cast<double>();
+  return packed((sum / static_cast<double>(colors.size())).cast<float>());
+}
+
 }  // namespace
 
 void bakeVertexColors(MeshPart& part) {
@@ -74,7 +80,8 @@ void bakeVertexColors(MeshPart& part) {
   while (static_cast<std::size_t>(cells) * cells * 2 < triangles) cells *= 2;
   const int cell = std::clamp(kMaxTextureSize / cells, kSmallestCell, kLargestCell);
   Texture texture{cells * cell, {}};
-  texture.texels.resize(static_cast<std::size_t>(texture.size) * texture.size);
+  // Reduced copies and samples at the edge of the used cells mix the others in.
+  texture.texels.assign(static_cast<std::size_t>(texture.size) * texture.size, meanColor(part.colors));
 
   std::vector<Vertex> vertices;
   vertices.reserve(3 * triangles);

@@ -199,7 +199,8 @@ TEST_F(SessionTest, AWorkerOfItsOwnEndsWhenTrainerOrMasterIsGone) {
   const auto session = launchTraining("stopped", {"rate:=1"});
   ASSERT_TRUE(waitFor([&] { return processesOf("trainer").size() == 1; })) << session->output();
   std::this_thread::sleep_for(std::chrono::seconds(4));
-  session->signal(SIGINT);
+  session->signal(SIGKILL);  // roslaunch; then nobody starts the trainer again, and nobody tells the master
+  for (const int trainer : processesOf("trainer")) ::kill(trainer, SIGKILL);
   ASSERT_TRUE(trainerLess->ends(kSessionSec)) << trainerLess->output();
   EXPECT_NE(trainerLess->output().find("no trainer has published /progress for 2 s"), std::string::npos)
       << trainerLess->output();

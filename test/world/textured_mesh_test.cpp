@@ -264,8 +264,9 @@ TEST_F(TexturedMeshTest, TexturesAreFoundByUrlAndWithABlankAtTheirEnd) {
   writeImage("cloth.png", 8, 8);
   const std::string square = write("square.obj", kSquare);
   for (const std::string& url :
-       {std::string("cloth.png  "), "file://" + folder_.path() + "/cloth.png", "package://" + name + "/cloth.png",
-        "model://" + name + "/cloth.png", std::string(".\\cloth.png")}) {
+       {std::string("cloth.png  "), "file://" + folder_.path() + "/cloth.png", std::string("file://cloth.png"),
+        "package://" + name + "/cloth.png", "package://" + name + "//cloth.png", "model://" + name + "/cloth.png",
+        std::string(".\\cloth.png")}) {
     write("square.mtl", "newmtl cloth\nmap_Kd " + url + "\n");
     TexturedMesh mesh;
     EXPECT_EQ(notesOf(square, &mesh), "") << url;
@@ -320,6 +321,9 @@ TEST_F(TexturedMeshTest, VertexColoursBecomeATexture) {
   ASSERT_EQ(mesh.parts.size(), 1u);
   const MeshPart& part = mesh.parts[0];
   EXPECT_EQ(mesh.triangleCount(), 12u);
+  for (const std::uint32_t texel : part.texture.texels) {
+    EXPECT_EQ(texel >> 24, 255u) << "an unused texel, which reduced copies mix in, is not black";
+  }
   for (const Vertex& vertex : part.vertices) {
     EXPECT_EQ(colorAt(part, vertex), vertex.position.z() > 0.05f ? rgb(255, 0, 0) : rgb(0, 0, 255));
   }
@@ -368,6 +372,42 @@ TEST_F(TexturedMeshTest, VertexColoursSurviveSimplification) {
   }
 }
 
+TEST_F(TexturedMeshTest, SharedVerticesKeepSharpEdges) {
+  TexturedMesh mesh;
+  EXPECT_EQ(notesOf(write("box.ply", boxPly(false, false)), &mesh), "");
+  for (const Vertex& vertex : mesh.parts.at(0).vertices) {
+    EXPECT_NEAR(vertex.normal.cwiseAbs().maxCoeff(), 1, 1e-6) << "a box has flat sides";
+  }
+  EXPECT_EQ(mesh.parts[0].vertices.size(), 24u);
+}
+
+TEST_F(TexturedMeshTest, ADegenerateTriangleDoesNotOpenAMesh) {
+  const std::string one_more = replaced(boxPly(false, false), "element face 6", "element face 7") + "3 0 0 1\n";
+  TexturedMesh mesh;
+  EXPECT_EQ(notesOf(write("box.ply", one_more), &mesh), "");
+  EXPECT_LE(mesh.triangleCount(), 13u) << "PLY files are two-sided where they are open";
+}
+
+TEST_F(TexturedMeshTest, WallsThatAreSeenFromInsideAreNotTurned) {
+  testing::internal::CaptureStderr();
+  loadTexturedMesh(write("room.ply", boxPly(true, false)), kUnscaled, kManyTriangles, MeshPurpose::kSurroundings);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(TexturedMeshTest, OneMaterialMayHaveMeshesWithAndWithoutVertexColours) {
+  write("square.mtl", "newmtl cloth\nKd 0 1 0\n");
+  TexturedMesh mesh;
+  notesOf(
+      write("two.obj", std::string("mtllib square.mtl\no a\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 0 1 1 0 0\nusemtl cloth\n"
+                                   "f 1 2 3\no b\nv 0 2 0\nv 1 2 0\nv 0 2 1\nf 4 5 6\n")),
+      &mesh);
+  for (const MeshPart& part : mesh.parts) {
+    for (const Vertex& vertex : part.vertices) {
+      EXPECT_NE(colorAt(part, vertex), rgb(255, 255, 255)) << "neither the file's colours nor its material's";
+    }
+  }
+}
+
 TEST_F(TexturedMeshTest, AClosedMeshWhoseFacesPointInwardsIsTurned) {
   for (const bool inwards : {false, true}) {
     TexturedMesh mesh;
@@ -409,7 +449,7 @@ TEST_F(TexturedMeshTest, GltfStandsUprightInItsPlainColour) {
   EXPECT_EQ(notesOf(write("triangle.gltf", triangleGltf(orange)), &mesh), "");
   EXPECT_LT((mesh.bounds().sizes() - Eigen::Vector3f(0.2f, 0, 0.3f)).norm(), 1e-6f);
   EXPECT_EQ(mesh.triangleCount(), 1u);
-  EXPECT_EQ(mesh.parts.at(0).texture.texels.at(0), rgb(255, 128, 0));
+  EXPECT_EQ(mesh.parts.at(0).texture.texels.at(0), rgb(255, 188, 0)) << "0.5 of the light is 188 in sRGB";
   EXPECT_LT((mesh.parts[0].vertices[0].normal + Eigen::Vector3f::UnitY()).norm(), 1e-6f) << "glTF's front is -y here";
 }
 

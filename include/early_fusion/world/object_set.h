@@ -16,6 +16,7 @@ struct Object {
   TexturedMesh mesh;
   std::string mesh_file;
   /// Coordinates of `mesh` = mesh_rotation * (mesh_scale * coordinates in the file) - mesh_origin.
+  /// The axes of a glTF file are turned first, so that z is up.
   Eigen::Vector3d mesh_scale;
   Eigen::Quaterniond mesh_rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d mesh_origin;        ///< [m]

@@ -37,13 +37,17 @@ struct TexturedMesh {
   Eigen::AlignedBox3f bounds() const;
 };
 
-/// Loads any mesh that assimp reads, with its diffuse textures, its vertex colours where it has no texture, or its plain
-/// colours. Computes smooth normals if the file has none. glTF files are turned, because their y points up. Two-sided
-/// materials of open meshes get a second side, and closed meshes whose faces point inwards are turned. A mesh with more
-/// than `max_triangles` is simplified to that number. Notes on stderr say what was simplified or turned, and what cannot
-/// be read: instead of such a texture, the plain colour is drawn.
+/// Objects are seen from outside, surroundings such as a room's walls also from inside.
+enum class MeshPurpose { kObject, kSurroundings };
+
+/// Loads any mesh that assimp reads, with its diffuse textures, its vertex colours where it has no texture, or its
+/// plain colours. Computes smooth normals if the file has none. glTF files are turned, because their y points up.
+/// Two-sided materials of open meshes get a second side, and closed objects whose faces point inwards are turned. A
+/// mesh with more than `max_triangles` is simplified to that number. Notes on stderr say what was simplified or turned,
+/// and what cannot be read: instead of such a texture, the plain colour is drawn.
 /// @param metres_from_file converts the file's coordinates to metres.
 /// @throws Error naming `path` and the fault (no triangles, numbers that are not finite).
-TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles);
+TexturedMesh loadTexturedMesh(const std::string& path, const Eigen::Affine3d& metres_from_file, int max_triangles,
+                              MeshPurpose purpose = MeshPurpose::kObject);
 
 }  // namespace early_fusion::world

@@ -29,6 +29,8 @@ SessionMonitorNode::SessionMonitorNode(const Options& options)
 }
 
 void SessionMonitorNode::onProgress(const Progress& progress) {
+  had_trainer_ = true;
+  last_trainer_ = ::ros::WallTime::now();
   if (progress.stage != "finished") return;
   ROS_INFO("the session is finished: F1 %.3f, agreement %.3f", progress.f1, progress.agreement);
   ::ros::requestShutdown();
@@ -51,10 +53,6 @@ void SessionMonitorNode::checkPresence() {
   };
   if (::ros::master::check()) last_master_ = now;
   requirePresence(last_master_, "the master " + ::ros::master::getURI() + " has not answered");
-  if (progress_subscriber_.getNumPublishers() > 0) {
-    had_trainer_ = true;
-    last_trainer_ = now;
-  }
   if (had_trainer_) requirePresence(last_trainer_, "no trainer has published " + progress_subscriber_.getTopic());
 }
 

@@ -18,7 +18,8 @@ class SessionMonitorNode {
  public:
   struct Options {
     double period_sec = 0.5;
-    double timeout_sec = 0;  ///< how long the master, or a trainer that was there, may be away; 0: for ever
+    /// How long the master may be away, or `progress` may stay away after it has come once; 0: for ever.
+    double timeout_sec = 0;
 
     core::OptionSet options();
   };
@@ -35,7 +36,7 @@ class SessionMonitorNode {
   const double timeout_sec_;
   bool had_trainer_ = false;
   ::ros::WallTime last_master_;   ///< when the master last answered
-  ::ros::WallTime last_trainer_;  ///< when somebody last published `progress`
+  ::ros::WallTime last_trainer_;  ///< when `progress` last came; a trainer that was killed stays a publisher
   ::ros::NodeHandle node_;
   ::ros::Subscriber progress_subscriber_;
   ::ros::WallTimer timer_;
