@@ -1,5 +1,5 @@
-# Sourced by the other scripts. Sets the environment of the built package. Topics and services are for this machine only,
-# unless the user sets ROS_IP or ROS_HOSTNAME; docs/ros.md, "Who reaches a node", says what listens all the same.
+# Sourced by the other scripts. Sets the environment of the built package. Topics and services are for this machine
+# only, unless the user sets ROS_IP or ROS_HOSTNAME; docs/ros.md, "Who reaches a node", says what listens all the same.
 set +u
 . "$(dirname "${BASH_SOURCE[0]}")/../devel/setup.sh"
 set -u

@@ -39,8 +39,7 @@ TEST_F(FilesFolderTest, TakesRelativeAndAbsolutePathsInTheFolder) {
 
 TEST_F(FilesFolderTest, RefusesEverythingElse) {
   fs::create_symlink("/etc", folder_ / "link");
-  for (const std::string path :
-       {"/etc/passwd", "../other", "sub/../../other", "link/passwd", "", ".", "sub/..", "/"}) {
+  for (const std::string path : {"/etc/passwd", "../other", "sub/../../other", "link/passwd", "", ".", "sub/..", "/"}) {
     EXPECT_EQ(errorOf(path).find("path: '" + path + "' is not a file in "), 0u) << path << ": " << errorOf(path);
   }
   // A folder whose name begins with that of the allowed one.

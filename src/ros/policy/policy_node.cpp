@@ -39,7 +39,8 @@ core::OptionSet PolicyNode::Options::options() {
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
           "edge of the grid of occlusion saliency that tints the annotated image; costs one prediction for each cell; "
           "0: no tint; kinds with attention show their own map");
-  set.add("files", files, "folder of the files that load_weights and save_weights may use; empty: $ROS_HOME/early_fusion or\n"
+  set.add("files", files,
+          "folder of the files that load_weights and save_weights may use; empty: $ROS_HOME/early_fusion or\n"
           "~/.ros/early_fusion");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;

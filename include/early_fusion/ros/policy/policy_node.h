@@ -33,7 +33,7 @@ class PolicyNode {
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
-    std::string files;  ///< folder of the files that services name; empty: defaultFilesFolder()
+    std::string files;      ///< folder of the files that services name; empty: defaultFilesFolder()
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
