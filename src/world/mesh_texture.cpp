@@ -181,15 +181,14 @@ Texture uniformTexture(std::uint32_t color) {
   return {kUniformSize, std::vector<std::uint32_t>(kUniformSize * kUniformSize, color)};
 }
 
-Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path, bool linear) {
+std::optional<Texture> readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path) {
   const std::string name = imageName(material);
-  const auto plain = [&] { return uniformTexture(packColor(plainColor(material), linear)); };
-  if (name.empty()) return plain();
+  if (name.empty()) return std::nullopt;
   try {
     return squareTexture(readImage(scene, name, mesh_path));
   } catch (const core::Error& error) {
     std::cerr << "early_fusion: " << error.what() << "; drawn in its plain colour\n";
-    return plain();
+    return std::nullopt;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <assimp/scene.h>
 
+#include <optional>
 #include <string>
 
 #include "early_fusion/world/textured_mesh.h"
@@ -25,9 +26,8 @@ bool hasImage(const aiMaterial& material);
 Texture uniformTexture(std::uint32_t color);
 
 /// The material's diffuse image as a square with a power-of-two edge. It comes from a file beside `mesh_path` or is
-/// embedded in the scene. Without an image, or with one that cannot be read, which a note on stderr names, the result
-/// is a uniform texture of the diffuse colour.
-Texture readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path, bool linear);
+/// embedded in the scene. Nothing if there is none, or if it cannot be read, which a note on stderr says.
+std::optional<Texture> readTexture(const aiScene& scene, const aiMaterial& material, const std::string& mesh_path);
 
 /// The strength of the highlight, [0, 1], computed from the specular colour and shininess or from a physically based
 /// roughness.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <optional>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
@@ -180,6 +181,7 @@ void turnOutwards(TexturedMesh& mesh, const std::string& path) {
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) std::swap(part.indices[i + 1], part.indices[i + 2]);
     for (Vertex& vertex : part.vertices) vertex.normal *= agreement > 0 ? -1.f : 1.f;
   }
+  mesh.adapted = true;
   std::cerr << "early_fusion: " << path << ": its faces point inwards; they are turned\n";
 }
 
@@ -195,18 +197,23 @@ bool hasArea(const TexturedMesh& mesh) {
   return false;
 }
 
-void setMaterial(MeshPart& part, const aiScene& scene, const aiMaterial& material, const std::string& path) {
-  part.texture = readTexture(scene, material, path, isGltf(path));
+/// @return whether the part looks as rviz draws it: with its image or its plain colour.
+bool setMaterial(MeshPart& part, const aiScene& scene, const aiMaterial& material, const std::string& path) {
+  const std::optional<Texture> image = readTexture(scene, material, path);
+  part.texture = image ? *image : uniformTexture(packColor(plainColor(material), isGltf(path)));
   part.specular = readSpecular(material);
   const auto& colors = part.colors;
   const bool varies =
       std::any_of(colors.begin(), colors.end(), [&](std::uint32_t color) { return color != colors[0]; });
   if (hasImage(material)) {
     part.colors.clear();
-  } else if (!varies) {
-    part.texture = uniformTexture(colors[0]);
-    part.colors.clear();
+    return image.has_value();
   }
+  if (varies) return false;
+  const bool plain = part.texture.texels[0] == colors[0];
+  part.texture = uniformTexture(colors[0]);
+  part.colors.clear();
+  return plain;
 }
 
 bool isTwoSided(const aiMaterial& material) {
@@ -223,7 +230,7 @@ TexturedMesh convert(const std::string& path, const aiScene& scene, const Eigen:
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     MeshPart& part = conversion.part_of_material[i];
     if (part.indices.empty()) continue;
-    setMaterial(part, scene, *scene.mMaterials[i], path);
+    mesh.adapted |= !setMaterial(part, scene, *scene.mMaterials[i], path);
     mesh.parts.push_back(std::move(part));
     two_sided.push_back(isTwoSided(*scene.mMaterials[i]));
   }

@@ -48,28 +48,31 @@ TEST_F(MarkersTest, ShowAMeshForEachObjectWhereItStands) {
   }
 }
 
-TEST_F(MarkersTest, AFileThatRvizReadsOtherwiseIsShownAsTriangles) {
+TEST_F(MarkersTest, AnObjectThatRvizDrawsOtherwiseIsShownAsTriangles) {
   world::World world = *world_;
   const int item = episode_.setup().instances[0].item;
-  std::vector<world::Object> objects;
-  for (int i = 0; i < world.objects.size(); ++i) objects.push_back(world.objects[i]);
-  objects[item].mesh_file = "thing.glb";
-  world.objects = world::ObjectSet(objects);
-  const visualization_msgs::MarkerArray array = objectMarkers(world, episode_, {});
-  const auto marker =
-      std::find_if(array.markers.begin(), array.markers.end(),
-                   [](const visualization_msgs::Marker& one) { return one.ns == "objects" && one.id == 0; });
-  ASSERT_NE(marker, array.markers.end());
-  EXPECT_EQ(marker->type, visualization_msgs::Marker::TRIANGLE_LIST);
-  ASSERT_EQ(marker->points.size(), 3 * objects[item].mesh.triangleCount());
-  ASSERT_EQ(marker->colors.size(), marker->points.size());
-  const world::MeshPart& part = objects[item].mesh.parts[0];
-  const world::Vertex& corner = part.vertices[part.indices[4]];
-  EXPECT_FLOAT_EQ(marker->points[4].z, corner.position.z());
-  EXPECT_EQ(marker->colors[4].a, 1.f);
-  const Eigen::Vector3d place = sim::worldFromObject(world, episode_.setup().instances[0]).translation();
-  EXPECT_NEAR(marker->pose.position.x, place.x(), 1e-9);
-  EXPECT_NEAR(marker->pose.position.y, place.y(), 1e-9);
+  for (const bool adapted : {false, true}) {
+    std::vector<world::Object> objects;
+    for (int i = 0; i < world_->objects.size(); ++i) objects.push_back(world_->objects[i]);
+    objects[item].mesh_file = adapted ? "thing.obj" : "thing.glb";
+    objects[item].mesh.adapted = adapted;
+    world.objects = world::ObjectSet(objects);
+    const visualization_msgs::MarkerArray array = objectMarkers(world, episode_, {});
+    const auto marker =
+        std::find_if(array.markers.begin(), array.markers.end(),
+                     [](const visualization_msgs::Marker& one) { return one.ns == "objects" && one.id == 0; });
+    ASSERT_NE(marker, array.markers.end());
+    EXPECT_EQ(marker->type, visualization_msgs::Marker::TRIANGLE_LIST);
+    ASSERT_EQ(marker->points.size(), 3 * objects[item].mesh.triangleCount());
+    ASSERT_EQ(marker->colors.size(), marker->points.size());
+    const world::MeshPart& part = objects[item].mesh.parts[0];
+    const world::Vertex& corner = part.vertices[part.indices[4]];
+    EXPECT_FLOAT_EQ(marker->points[4].z, corner.position.z());
+    EXPECT_EQ(marker->colors[4].a, 1.f);
+    const Eigen::Vector3d place = sim::worldFromObject(world, episode_.setup().instances[0]).translation();
+    EXPECT_NEAR(marker->pose.position.x, place.x(), 1e-9);
+    EXPECT_NEAR(marker->pose.position.y, place.y(), 1e-9);
+  }
 }
 
 TEST_F(MarkersTest, LeaveOutWhatWasTakenAway) {

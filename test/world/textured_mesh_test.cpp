@@ -107,7 +107,9 @@ TEST_F(TexturedMeshTest, TexturesBecomeSquaresOfAPowerOfTwo) {
 
 TEST_F(TexturedMeshTest, APlainColourBecomesASmallTexture) {
   write("square.mtl", "newmtl cloth\nKd 1 0.5 0\n");
-  const MeshPart part = loadTexturedMesh(write("square.obj", kSquare), kUnscaled, kManyTriangles).parts[0];
+  const TexturedMesh mesh = loadTexturedMesh(write("square.obj", kSquare), kUnscaled, kManyTriangles);
+  EXPECT_FALSE(mesh.adapted);
+  const MeshPart& part = mesh.parts[0];
   EXPECT_EQ(part.texture.size, 4);
   EXPECT_EQ(part.texture.texels, std::vector<std::uint32_t>(16, rgb(255, 128, 0)));
   EXPECT_EQ(part.specular, 0.f);
@@ -242,6 +244,7 @@ TEST_F(TexturedMeshTest, ATextureThatCannotBeReadIsNamedAndThePlainColourDrawn) 
     EXPECT_NE(notes.find(square), std::string::npos) << notes;
     EXPECT_NE(notes.find(name), std::string::npos) << notes;
     EXPECT_EQ(mesh.parts.at(0).texture.texels.at(0), rgb(0, 255, 0));
+    EXPECT_TRUE(mesh.adapted);
   }
 }
 
@@ -318,6 +321,7 @@ std::uint32_t colorAt(const MeshPart& part, const Vertex& vertex) {
 TEST_F(TexturedMeshTest, VertexColoursBecomeATexture) {
   TexturedMesh mesh;
   EXPECT_EQ(notesOf(write("box.ply", boxPly(false, true)), &mesh), "");
+  EXPECT_TRUE(mesh.adapted);
   ASSERT_EQ(mesh.parts.size(), 1u);
   const MeshPart& part = mesh.parts[0];
   EXPECT_EQ(mesh.triangleCount(), 12u);
@@ -413,6 +417,7 @@ TEST_F(TexturedMeshTest, AClosedMeshWhoseFacesPointInwardsIsTurned) {
     TexturedMesh mesh;
     const std::string notes = notesOf(write("box.ply", boxPly(inwards, false)), &mesh);
     EXPECT_EQ(notes.find("its faces point inwards") != std::string::npos, inwards) << notes;
+    EXPECT_EQ(mesh.adapted, inwards);
     const MeshPart& part = mesh.parts.at(0);
     for (std::size_t i = 0; i < part.indices.size(); i += 3) {
       const Vertex &a = part.vertices[part.indices[i]], &b = part.vertices[part.indices[i + 1]],

@@ -32,6 +32,9 @@ struct MeshPart {
 
 struct TexturedMesh {
   std::vector<MeshPart> parts;
+  /// Whether the mesh differs from the file's triangles with their images and plain colours, which is what rviz draws:
+  /// vertex colours, faces that were turned, an image that cannot be read.
+  bool adapted = false;
 
   std::size_t triangleCount() const;
   Eigen::AlignedBox3f bounds() const;

@@ -15,9 +15,10 @@ namespace {
 constexpr double kNameHeight = 0.03;  // [m], of a capital letter
 constexpr double kNameGap = 0.02;     // [m], between an object and its name
 
-/// Whether rviz draws the file as the simulator does: no vertex colours, no nodes or axes that it treats otherwise.
-bool isReadByRviz(const std::string& mesh_file) {
-  std::string extension = std::filesystem::path(mesh_file).extension().string();
+/// Whether rviz draws the object's file as the simulator does.
+bool isDrawnByRviz(const world::Object& object) {
+  if (object.mesh.adapted) return false;
+  std::string extension = std::filesystem::path(object.mesh_file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return extension == ".obj" || extension == ".stl" || extension == ".dae";
@@ -59,7 +60,7 @@ visualization_msgs::Marker triangleMarker(const world::Object& object, const Eig
 }
 
 visualization_msgs::Marker meshMarker(const world::Object& object, const Eigen::Isometry3d& world_from_object) {
-  if (!isReadByRviz(object.mesh_file)) return triangleMarker(object, world_from_object);
+  if (!isDrawnByRviz(object)) return triangleMarker(object, world_from_object);
   visualization_msgs::Marker marker;
   marker.ns = "objects";
   marker.type = visualization_msgs::Marker::MESH_RESOURCE;
