@@ -15,6 +15,7 @@
 #include <boost/make_shared.hpp>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,20 @@ double residentMb(int process) {
   return resident * sysconf(_SC_PAGESIZE) / 1e6;
 }
 
+/// Processor time that a process has used [ms].
+double processorMs(int process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));  // after the name
+  std::string field;
+  double ticks = 0;
+  for (int i = 3; fields >> field && i <= 15; ++i) {
+    if (i >= 14) ticks += std::stod(field);  // in user mode and in the kernel
+  }
+  return 1e3 * ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
 /// Sends images with requests and waits for each action.
 class CameraBench {
  public:
@@ -132,6 +147,7 @@ void run(const CameraBenchOptions& options) {
   const BusyProcesses busy(options.busy);
   std::vector<double> times;
   double early_mb = 0;
+  const double processor_before = processorMs(process);
   ros::WallRate rate(options.rate_hz > 0 ? options.rate_hz : 1e6);
   for (int i = 0; i < options.images && ros::ok(); ++i) {
     times.push_back(bench.ask(30 + i));
@@ -141,9 +157,9 @@ void run(const CameraBenchOptions& options) {
   std::sort(times.begin(), times.end());
   std::printf(
       "%zu Bayer images of 640 x 480 at %.0f Hz beside %d busy processes: median %.2f ms, 99 %% %.2f ms; "
-      "memory of the node %.1f MB after a tenth of them, %.1f MB at the end\n",
-      times.size(), options.rate_hz, options.busy, times[times.size() / 2], times[times.size() * 99 / 100], early_mb,
-      residentMb(process));
+      "%.2f ms of processor an image; memory of the node %.1f MB after a tenth of them, %.1f MB at the end\n",
+      times.size(), options.rate_hz, options.busy, times[times.size() / 2], times[times.size() * 99 / 100],
+      (processorMs(process) - processor_before) / static_cast<double>(times.size()), early_mb, residentMb(process));
 }
 
 }  // namespace

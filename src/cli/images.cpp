@@ -1,5 +1,7 @@
 #include "images.h"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/model/annotation.h"
@@ -29,6 +31,38 @@ core::Image sheet(const std::vector<core::Image>& images) {
   return result;
 }
 
+/// Where an object is in the frame; nothing if part of it is behind the camera or none of it is in view.
+std::optional<model::Box> boxAround(const world::World& world, const sim::Instance& instance,
+                                    world::Orientation orientation, int size) {
+  const Eigen::Isometry3d camera_from_object =
+      world.rig.worldFromCamera(orientation).inverse() * sim::worldFromObject(world, instance);
+  const double focal_px = 0.5 * size / std::tan(0.5 * world.options.horizontal_fov_deg * kPi / 180);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner : world.objects[instance.item].hull) {
+    const Eigen::Vector3d seen = camera_from_object * corner;
+    if (seen.z() <= 0) return std::nullopt;
+    box.extend((focal_px * seen.head<2>() / seen.z()).eval());
+  }
+  box.translate(Eigen::Vector2d::Constant(0.5 * size));
+  if (!box.intersects(Eigen::AlignedBox2d(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(size)))) {
+    return std::nullopt;
+  }
+  const auto pixel = [](double value) { return static_cast<int>(std::lround(value)); };
+  return model::Box{pixel(box.min().x()), pixel(box.min().y()), pixel(box.max().x()), pixel(box.max().y())};
+}
+
+std::vector<model::Box> boxesAroundRequested(const world::World& world, const PlayedStep& step, int size) {
+  std::vector<model::Box> boxes;
+  for (std::size_t i = 0; i < step.instances.size(); ++i) {
+    const sim::Instance& instance = step.instances[i];
+    const core::Request& request = step.state.request;
+    const bool requested = std::find(request.begin(), request.end(), instance.item) != request.end();
+    if (!requested || (step.state.present >> i & 1u) == 0) continue;
+    if (const auto box = boxAround(world, instance, step.state.orientation, size)) boxes.push_back(*box);
+  }
+  return boxes;
+}
+
 core::Image draw(render::Rasterizer& rasterizer, const world::World& world, const PlayedStep& step,
                  const ImageStyle& style) {
   core::Image image;
@@ -40,6 +74,7 @@ core::Image draw(render::Rasterizer& rasterizer, const world::World& world, cons
     const double fov_rad = world.options.horizontal_fov_deg * kPi / 180;
     annotation.cone_radius_px = model::coneRadiusPx(sim::kConeHalfAngleRad, fov_rad, style.size);
     annotation.request = world.objects.vocabulary().names(step.state.request);
+    annotation.boxes = boxesAroundRequested(world, step, style.size);
     annotation.action = core::actionName(step.action);
     if (step.action != step.expert_action) {
       annotation.note = std::string("expert: ") + core::actionName(step.expert_action);

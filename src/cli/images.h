@@ -16,13 +16,13 @@ struct PlayedStep {
   sim::EpisodeState state;
   core::Action action;
   core::Action expert_action;
-  std::optional<Eigen::MatrixXf> attention;  ///< of the policy that acted, see model::GoalPolicy
+  std::optional<Eigen::MatrixXf> attention;  ///< of a policy, see model::GoalPolicy
 };
 
 struct ImageStyle {
   int size;       ///< edge of each drawn image [px]
   int scale;      ///< enlargement of each image
-  bool annotate;  ///< attention map, crosshair circle, request and action
+  bool annotate;  ///< attention map, crosshair circle, boxes around requested objects, request and action
 };
 
 /// An image of each step.

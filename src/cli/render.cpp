@@ -21,6 +21,7 @@ struct RenderOptions {
   std::string image = "step";
   std::string task = "simple";
   std::string policy = "expert";
+  std::string attend;
   std::string world;
   std::uint64_t seed = learning::kHeldOutSeed;
   std::uint64_t episode = 0;
@@ -45,7 +46,10 @@ core::OptionSet RenderOptions::options() {
   set.add("policy", policy, "agent that acts: expert, searching, random, idle, or a weights file");
   core::addImageSize(set, "size", size, "edge of a drawn image");
   set.add("scale", scale, 1, 16, "", "enlargement of each image");
-  set.add("annotate", annotate, "add the crosshair circle, the request, the action and the policy's attention map");
+  set.add("attend", attend, "weights file whose attention map --annotate shows; empty: that of the policy that acts");
+  set.add("annotate", annotate,
+          "add the crosshair circle, boxes around the requested objects, the request, the action and the policy's "
+          "attention map");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
   set.add("out", out, "the PNG file to write; with --image steps, the folder for step_00.png, step_01.png and so on");
   return set;
@@ -70,18 +74,33 @@ void writeSteps(const std::string& folder, const std::vector<core::Image>& steps
   }
 }
 
+/// The policy of --attend, or null. @throws Error if it is no policy.
+std::unique_ptr<model::GoalPolicy> attendingPolicy(const RenderOptions& options, const world::World& world) {
+  if (options.attend.empty()) return nullptr;
+  if (!options.annotate) throw core::Error("--attend: needs --annotate, which shows the attention map");
+  NamedAgent named = makeNamedAgent(options.attend, "argmax", options.seed, world);
+  if (named.policy == nullptr) throw core::Error("--attend: '" + options.attend + "' is not a weights file");
+  return std::move(named.policy);
+}
+
 /// Plays the whole episode and stores the state of each step.
 std::vector<PlayedStep> play(const RenderOptions& options, const world::World& world, const sim::Task& task) {
-  NamedAgent named = makeNamedAgent(options.policy, "argmax", options.seed, world);
+  const NamedAgent named = makeNamedAgent(options.policy, "argmax", options.seed, world);
+  const std::unique_ptr<model::GoalPolicy> attending = attendingPolicy(options, world);
+  model::GoalPolicy* const shown = attending ? attending.get() : named.policy.get();
   std::vector<PlayedStep> played;
   learning::RolloutRunner runner(world, task, options.seed);
   runner.setObserver([&](std::uint64_t, const sim::Episode& before, const learning::TrajectoryStep& step) {
     played.push_back({before.setup().instances, before.state(), step.action, step.label.action, std::nullopt});
   });
-  const bool may_attend = options.annotate && named.policy != nullptr;
+  const bool may_attend = options.annotate && shown != nullptr;
   runner.run(options.episode, 1, *named.agent, may_attend, [&](const learning::Trajectory& trajectory) {
     for (std::size_t i = 0; may_attend && i < played.size(); ++i) {
-      played[i].attention = named.policy->attention({trajectory.frameStack(i), &trajectory.steps[i].request});
+      played[i].attention = shown->attention({trajectory.frameStack(i), &trajectory.steps[i].request});
+      if (attending && !played[i].attention) {
+        throw core::Error("--attend: " + options.attend + " is of kind " + shown->options().kind +
+                          ", which has no attention map");
+      }
     }
   });
   return played;

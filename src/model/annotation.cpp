@@ -25,6 +25,11 @@ core::Image annotate(const core::Image& image, const Annotation& annotation, int
   const cv::Mat source(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
   cv::Mat canvas(result.height, result.width, CV_8UC3, result.rgb.data());
   cv::resize(source, canvas, canvas.size(), 0, 0, cv::INTER_NEAREST);
+  for (const Box& box : annotation.boxes) {
+    const cv::Point corner(box.left * scale, box.top * scale), opposite(box.right * scale, box.bottom * scale);
+    cv::rectangle(canvas, corner, opposite, {0, 0, 0}, 3);
+    cv::rectangle(canvas, corner, opposite, {80, 255, 80}, 1);
+  }
   if (annotation.cone_radius_px > 0) {
     const cv::Point centre(result.width / 2, result.height / 2);
     const int radius = static_cast<int>(std::lround(annotation.cone_radius_px * scale));

@@ -9,7 +9,9 @@ int main(int argc, char** argv) {
   namespace nodes = early_fusion::nodes;
   return nodes::runNode(argc, argv, "trainer", nodes::TrainerNode::Options().options(), [] {
     const nodes::TrainerNode::Options options = nodes::loadTrainerOptions();
-    nodes::TrainerNode node(options, nodes::startSession(options.session));
+    const auto world = early_fusion::world::loadWorld(options.session.world);
+    nodes::TrainerNode node(options, nodes::startSession(options.session, world));
+    const auto workers = nodes::startLocalWorkers(options, world);
     ros::spin();
   });
 }

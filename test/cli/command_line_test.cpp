@@ -152,6 +152,28 @@ TEST_F(CommandLine, RendersWhatAPolicyAttendsTo) {
     return mean[2] - mean[1];
   };
   EXPECT_GT(rednessOf("softmax_attention_map"), rednessOf("early_fusion") + 20);
+  // The same frame, whoever acts: what the policy of --attend attends to is drawn, not the frame of its own actions.
+  ASSERT_EQ(run("render --step 9 --annotate --attend " + path("softmax_attention_map") + " --out " + path("b.png")), 0)
+      << errors_;
+  ASSERT_EQ(run("render --step 9 --annotate --out " + path("c.png")), 0) << errors_;
+  EXPECT_GT(cv::mean(cv::imread(path("b.png")))[2], cv::mean(cv::imread(path("c.png")))[2] + 10);
+}
+
+TEST_F(CommandLine, BoxesTheRequestedObjects) {
+  const std::string step = "render --task simple --seed 4 --size 256 ";
+  int episode = 0, green = 0;
+  for (; episode < 10 && green == 0; ++episode) {  // in some episodes nothing requested is in view at the start
+    const std::string of = step + "--episode " + std::to_string(episode);
+    ASSERT_EQ(run(of + " --annotate --out " + path("boxed.png")), 0) << errors_;
+    ASSERT_EQ(run(of + " --out " + path("plain.png")), 0) << errors_;
+    const cv::Mat boxed = cv::imread(path("boxed.png")), plain = cv::imread(path("plain.png"));
+    cv::Mat is_green, was_green;
+    cv::inRange(boxed, cv::Scalar(80, 255, 80), cv::Scalar(80, 255, 80), is_green);
+    cv::inRange(plain, cv::Scalar(80, 255, 80), cv::Scalar(80, 255, 80), was_green);
+    ASSERT_EQ(cv::countNonZero(was_green), 0);
+    green = cv::countNonZero(is_green);
+  }
+  EXPECT_GT(green, 20);
 }
 
 TEST_F(CommandLine, PrintsTheUrdfsOfAWorld) {
@@ -301,6 +323,8 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"train --output " + path("r") + " --preset quick", "quick"},
       {"evaluate --policy nobody.safetensors", "nobody.safetensors"},
       {"evaluate --policy expert --task harder", "harder"},
+      {"render --attend no.safetensors --out " + path("x.png"), "--attend: needs --annotate"},
+      {"render --annotate --attend random --out " + path("x.png"), "--attend: 'random' is not a weights file"},
       {"render --step 48 --out " + path("x.png"), "--step"},
       {"render --image steps --out -", "--image steps needs a folder"},
       {"render --size 20 --out " + path("x.png"), "size: '20' is not a multiple of 16"},

@@ -135,7 +135,7 @@ TEST_F(SessionTest, TrainsTheWeightsOfTheCommandLineAndEndsByItself) {
 }
 
 TEST_F(SessionTest, KilledNodesComeBackAndTheWeightsAreTheSame) {
-  const auto session = launchTraining("killed", {"rate:=12", "respawn_delay:=0", "stall_timeout:=2"});
+  const auto session = launchTraining("killed", {"separate:=true", "rate:=12", "respawn_delay:=0", "stall_timeout:=2"});
   // Each in the middle of a rollout, some time after everything has begun.
   ASSERT_TRUE(waitFor([] { return exists("killed/checkpoint.safetensors"); })) << session->output();
   for (const std::string node : {"policy", "simulator", "trainer"}) {
@@ -156,13 +156,31 @@ TEST_F(SessionTest, KilledNodesComeBackAndTheWeightsAreTheSame) {
   EXPECT_EQ(result("killed")["per_episode"], result("reference")["per_episode"]);
 }
 
+TEST_F(SessionTest, AKilledProcessOfAllNodesComesBackAndTheWeightsAreTheSame) {
+  const auto session = launchTraining("killed_whole", {"rate:=12", "respawn_delay:=0"});
+  ASSERT_TRUE(waitFor([] { return exists("killed_whole/checkpoint.safetensors"); })) << session->output();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_TRUE(processesOf("policy").empty() && processesOf("simulator").empty());
+  const std::vector<int> before = processesOf("trainer");
+  ASSERT_EQ(before.size(), 1u) << session->output();
+  ASSERT_FALSE(exists("killed_whole/result.json")) << "too fast to be killed in between";
+  ::kill(before[0], SIGKILL);
+  ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+  ASSERT_TRUE(exists("killed_whole/result.json")) << session->output();
+  EXPECT_TRUE(weights("killed_whole") == weights("reference")) << session->output();
+  EXPECT_EQ(result("killed_whole")["per_episode"], result("reference")["per_episode"]);
+}
+
 TEST_F(SessionTest, AnyNumberOfWorkersTrainsTheSameWeights) {
   // A round has two trajectories: the third worker has nothing to do in it.
-  for (const std::string workers : {"1", "3"}) {
-    const auto session = launchTraining("workers" + workers, {"workers:=" + workers});
-    ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
-    ASSERT_TRUE(exists("workers" + workers + "/result.json")) << session->output();
-    EXPECT_TRUE(weights("workers" + workers) == weights("reference"));
+  for (const std::string separate : {"true", "false"}) {
+    for (const std::string workers : {"1", "3"}) {
+      const std::string run = "workers" + workers + separate;
+      const auto session = launchTraining(run, {"workers:=" + workers, "separate:=" + separate});
+      ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
+      ASSERT_TRUE(exists(run + "/result.json")) << session->output();
+      EXPECT_TRUE(weights(run) == weights("reference"));
+    }
   }
 }
 

@@ -7,11 +7,17 @@
 
 namespace early_fusion::model {
 
+/// A rectangle in pixels of the frame. It may reach beyond the frame.
+struct Box {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
 /// What is drawn on a frame for a person to see.
 struct Annotation {
   double cone_radius_px =
       0;  ///< radius of the circle in which COLLECT and REMOVE act, in pixels of the frame; 0: no circle
   std::vector<std::string> request;  ///< item names, one a line
+  std::vector<Box> boxes;            ///< frames around objects
   std::string action;                ///< empty: none
   std::string note;                  ///< bottom line, such as the expert's action; empty: none
 };

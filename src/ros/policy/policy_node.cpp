@@ -2,6 +2,7 @@
 
 #include <early_fusion/PolicyStatus.h>
 
+#include <boost/make_shared.hpp>
 #include <cstdio>
 
 #include "early_fusion/core/error.h"
@@ -46,9 +47,11 @@ core::OptionSet PolicyNode::Options::options() {
   return set;
 }
 
-PolicyNode::PolicyNode(const Options& options)
+PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
     : options_(options),
-      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }),
+      node_(context.node),
+      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }, context),
+      watch_(context.node),
       pairing_(kImageQueue),
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
@@ -103,7 +106,7 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   }
   const bool again = answer_valid_ && answer_.header.stamp == request.header.stamp &&
                      answer_.episode == request.episode && answer_.step == request.step;
-  if (again) return action_publisher_.publish(answer_);
+  if (again) return publishAnswer();
   Decision decision;
   try {
     decision = decide(image, request);
@@ -120,10 +123,13 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   answer_.frames = static_cast<std::uint8_t>(decision.frames);
   nameItem(decision.action, request);
   answer_valid_ = true;
-  action_publisher_.publish(answer_);
+  publishAnswer();
   latency_sec_ = (::ros::WallTime::now() - began).toSec();
   publishAnnotated(image.header, request);
 }
+
+/// A message of its own, because subscribers in this process get it without a copy.
+void PolicyNode::publishAnswer() { action_publisher_.publish(boost::make_shared<Action>(answer_)); }
 
 Decision PolicyNode::decide(const sensor_msgs::Image& image, const Request& request) {
   const core::Image frame = policyImage(image, cropOf(image), policy_.imageSize());

@@ -11,11 +11,13 @@ constexpr double kUpdatePeriodSec = 0.5;  // the interval at which the updater c
 
 }  // namespace
 
-Health::Health(Reporter reporter) : reporter_(std::move(reporter)) {
+Health::Health(Reporter reporter, const NodeContext& context)
+    : reporter_(std::move(reporter)), updater_(context.node, ::ros::NodeHandle(context.name), context.name) {
   updater_.setHardwareID("none");
   updater_.add("status", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); });
-  timer_ = ::ros::NodeHandle().createWallTimer(::ros::WallDuration(kUpdatePeriodSec),
-                                               [this](const ::ros::WallTimerEvent&) { updater_.update(); });
+  ::ros::NodeHandle node = context.node;
+  timer_ = node.createWallTimer(::ros::WallDuration(kUpdatePeriodSec),
+                                [this](const ::ros::WallTimerEvent&) { updater_.update(); });
 }
 
 void Health::count(const std::string& event) { ++events_[event].total; }

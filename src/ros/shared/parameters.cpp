@@ -2,7 +2,6 @@
 
 #include <ros/names.h>
 #include <ros/param.h>
-#include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <charconv>
@@ -38,8 +37,7 @@ std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
 
 }  // namespace
 
-core::GivenOptions privateParameters(const core::OptionSet& options) {
-  const std::string node = ::ros::this_node::getName();
+core::GivenOptions privateParameters(const core::OptionSet& options, const std::string& node) {
   core::GivenOptions parameters;
   XmlRpc::XmlRpcValue values;
   if (!::ros::param::get(node, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return parameters;
@@ -51,10 +49,8 @@ core::GivenOptions privateParameters(const core::OptionSet& options) {
   return parameters;
 }
 
-void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters) {
-  for (const auto& [name, text] : parameters) {
-    options.set(name, text, ::ros::this_node::getName() + "/" + name);
-  }
+void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters, const std::string& node) {
+  for (const auto& [name, text] : parameters) options.set(name, text, node + "/" + name);
 }
 
 std::string describeParameters(const core::OptionSet& options) {

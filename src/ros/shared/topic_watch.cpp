@@ -2,7 +2,6 @@
 
 #include <ros/console.h>
 #include <ros/master.h>
-#include <ros/node_handle.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -70,9 +69,8 @@ std::string silenceOf(const NeededTopic& topic, const std::vector<PublishedTopic
   return "nobody publishes it" + (topic.type.empty() ? "" : others) + "; " + topic.advice;
 }
 
-TopicWatch::TopicWatch() {
-  timer_ =
-      ::ros::NodeHandle().createWallTimer(::ros::WallDuration(1), [this](const ::ros::WallTimerEvent&) { check(); });
+TopicWatch::TopicWatch(::ros::NodeHandle node) {
+  timer_ = node.createWallTimer(::ros::WallDuration(1), [this](const ::ros::WallTimerEvent&) { check(); });
 }
 
 void TopicWatch::expect(const NeededTopic& topic) {

@@ -21,12 +21,14 @@ core::OptionSet SimulatorNode::Options::options() {
   return set;
 }
 
-SimulatorNode::SimulatorNode(const Options& options)
+SimulatorNode::SimulatorNode(const Options& options, const NodeContext& context,
+                             std::shared_ptr<const world::World> world)
     : options_(options),
-      world_(world::loadWorld(options.world)),
+      node_(context.node),
+      world_(world ? std::move(world) : world::loadWorld(options.world)),
       free_run_{sim::loadTask(options.task), options.seed, 0},
-      health_(
-          [this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); }),
+      health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); },
+              context),
       publisher_(node_, world_, options.marker_rate_hz),
       goal_server_(node_, kRunEpisodesAction, false) {
   action_subscriber_ = node_.subscribe<Action>(

@@ -7,6 +7,8 @@
 
 namespace early_fusion::nodes {
 
+std::string workerNamespace(int number) { return number == 1 ? "" : "worker_" + std::to_string(number); }
+
 RolloutWorkers::Worker::Worker(const std::string& name_space, const world::World& world, double stall_sec,
                                Health& health)
     : node(name_space),
@@ -15,8 +17,7 @@ RolloutWorkers::Worker::Worker(const std::string& name_space, const world::World
 
 RolloutWorkers::RolloutWorkers(int count, const world::World& world, double stall_sec, Health& health) {
   for (int i = 1; i <= count; ++i) {
-    const std::string name_space = i == 1 ? "" : "worker_" + std::to_string(i);
-    workers_.push_back(std::make_unique<Worker>(name_space, world, stall_sec, health));
+    workers_.push_back(std::make_unique<Worker>(workerNamespace(i), world, stall_sec, health));
   }
 }
 

@@ -24,6 +24,8 @@ core::OptionSet TrainerNode::Options::options() {
   set.add(
       "workers", workers, 1, 64, "",
       "number of workers (pairs of a simulator and a policy): in this namespace, in worker_2, in worker_3 and so on");
+  set.add("local_workers", local_workers, 0, 64, "",
+          "number of the workers, from the first on, that run in this process; the others are nodes of their own");
   set.add("stall_timeout", stall_sec, 1, 3600, "s",
           "request episodes again if no step of them has arrived for this long");
   set.add("progress_period", progress_period_sec, 0.1, 3600, "s", "time between two messages on 'progress'");

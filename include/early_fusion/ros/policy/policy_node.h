@@ -40,12 +40,13 @@ class PolicyNode {
   };
 
   /// @throws core::Error if the weights file cannot be used.
-  explicit PolicyNode(const Options& options);
+  explicit PolicyNode(const Options& options, const NodeContext& context = NodeContext());
 
  private:
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void onRequest(const RequestConstPtr& request);
   void answer(const sensor_msgs::Image& image, const Request& request);
+  void publishAnswer();
   /// @throws core::Error if the image or the request cannot be used.
   Decision decide(const sensor_msgs::Image& image, const Request& request);
   Crop cropOf(const sensor_msgs::Image& image);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "early_fusion/core/options.h"
+#include "early_fusion/ros/shared/node_context.h"
 
 namespace early_fusion::nodes {
 
@@ -21,7 +22,7 @@ class Health {
   /// Adds the node's own values, such as the current weights, to a report.
   using Reporter = std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>;
 
-  explicit Health(Reporter reporter = {});
+  explicit Health(Reporter reporter = {}, const NodeContext& context = NodeContext());
 
   /// Counts one event of a kind ("images"). Reported as a total and a rate.
   void count(const std::string& event);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ros/node_handle.h>
 #include <ros/time.h>
 #include <ros/wall_timer.h>
 
@@ -35,7 +36,8 @@ std::string silenceOf(const NeededTopic& topic, const std::vector<PublishedTopic
 /// For use from the node's callbacks, in one thread.
 class TopicWatch {
  public:
-  TopicWatch();
+  /// @param node of the timer.
+  explicit TopicWatch(::ros::NodeHandle node = ::ros::NodeHandle());
 
   /// Expects messages from now on. A topic that is expected already is left as it is.
   void expect(const NeededTopic& topic);

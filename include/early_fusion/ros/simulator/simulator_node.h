@@ -41,7 +41,9 @@ class SimulatorNode {
     core::OptionSet options();
   };
 
-  explicit SimulatorNode(const Options& options);
+  /// @param world nothing: it is loaded from `options.world`.
+  explicit SimulatorNode(const Options& options, const NodeContext& context = NodeContext(),
+                         std::shared_ptr<const world::World> world = nullptr);
 
  private:
   /// Who started the current episode.

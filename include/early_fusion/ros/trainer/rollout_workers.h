@@ -14,11 +14,13 @@
 
 namespace early_fusion::nodes {
 
+/// The namespace of a worker, below the trainer's: none for the first, then worker_2, worker_3 and so on.
+std::string workerNamespace(int number);
+
 /// The workers of a session, which share the episodes of a plan. A worker is a pair of a simulator and a policy. It
 /// runs in lockstep and keeps one core busy.
 ///
-/// The first worker's topics are in the node's namespace, those of the others in worker_2, worker_3, ... below it. The
-/// trajectories are the same for any number of workers.
+/// A worker's topics are in workerNamespace(). The trajectories are the same for any number of workers.
 class RolloutWorkers {
  public:
   /// @param count the number of workers, at least 1. `world` and `health` must outlive the object.

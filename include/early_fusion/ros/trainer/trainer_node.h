@@ -23,6 +23,7 @@ class TrainerNode {
   struct Options {
     learning::SessionOptions session;
     int workers = 1;
+    int local_workers = 0;  ///< of the workers, the first ones: they run in this process
     double stall_sec = 10;
     double progress_period_sec = 1;
     double diagnostic_period_sec = 1;
