@@ -1,7 +1,10 @@
 // A node with a wrong parameter must end with exit code 1 and name the parameter.
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
+#include <ros/callback_queue.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/node_handle.h>
 #include <ros/param.h>
 
 #include <algorithm>
@@ -98,14 +101,26 @@ TEST(NodeStart, LeavesGroupsOfParametersToThePluginsThatKeepThemThere) {
   while (!is_up()) ASSERT_FALSE(node.ends(0.05)) << node.output();
 }
 
-TEST(NodeStart, SaysThatSimulatedTimeStandsStill) {
+TEST(NodeStart, SaysThatSimulatedTimeStandsStillAndReportsOn) {
   ::ros::init(::ros::M_string(), "node_parameters");
+  ::ros::start();  // before the parameter is set: this process goes by wall time, and stays up after its handle
   const learning::SmallSession files;
   ::ros::param::set("/use_sim_time", true);
   ChildProcess node({std::string(EARLY_FUSION_NODES) + "/pan_tilt_driver_node", "__name:=timeless"}, {},
                     files.path("log"));
   while (node.output().find("/use_sim_time is true") == std::string::npos) {
     ASSERT_FALSE(node.ends(0.1)) << node.output();
+  }
+  // Its diagnostics go on.
+  int reports = 0;
+  ::ros::NodeHandle handle;
+  const ::ros::Subscriber subscriber = handle.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10, [&](const diagnostic_msgs::DiagnosticArrayConstPtr& array) {
+        reports += array->status.at(0).name == "timeless: status";
+      });
+  while (reports < 2) {
+    ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(0.1));
+    ASSERT_FALSE(node.ends(0)) << node.output();
   }
   ::ros::param::del("/use_sim_time");
 }

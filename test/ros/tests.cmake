@@ -5,7 +5,7 @@ target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
 foreach(name acting_policy camera_crop camera_image conversions files_folder joint_stepper markers option_tables
     pan_tilt_stepper request_list request_pairing rollout_recorder sight_line standstill topic_watch virtual_camera
-    virtual_joint)
+    virtual_joint wall_throttle)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()

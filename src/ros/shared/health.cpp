@@ -7,7 +7,7 @@ namespace early_fusion::nodes {
 namespace {
 
 constexpr double kWarningPeriodSec = 5.0;
-constexpr double kUpdatePeriodSec = 0.5;  // the interval at which the updater checks whether its own period has passed
+constexpr double kCheckPeriodSec = 0.1;
 
 }  // namespace
 
@@ -16,8 +16,11 @@ Health::Health(Reporter reporter, const NodeContext& context)
   updater_.setHardwareID("none");
   updater_.add("status", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); });
   ::ros::NodeHandle node = context.node;
-  timer_ = node.createWallTimer(::ros::WallDuration(kUpdatePeriodSec),
-                                [this](const ::ros::WallTimerEvent&) { updater_.update(); });
+  // The updater's own update() goes by ROS time, which stands still without a clock.
+  timer_ = node.createWallTimer(::ros::WallDuration(kCheckPeriodSec), [this](const ::ros::WallTimerEvent&) {
+    const bool due = ::ros::WallTime::now() - last_report_ >= ::ros::WallDuration(updater_.getPeriod());
+    if (due) updater_.force_update();
+  });
 }
 
 void Health::count(const std::string& event) { ++events_[event].total; }

@@ -209,7 +209,9 @@ void SimulatorNode::onIdleTimer() {
   if (!play_ && options_.free_run) return freeRun();
   if (!play_) return publisher_.publishJointStates();
   if (awaited_.isZero() || ::ros::WallTime::now() - published_ < ::ros::WallDuration(options_.republish_sec)) return;
-  ROS_WARN_THROTTLE(30, "no action for %.1f s; publishing %s again", options_.republish_sec, whatIsAwaited().c_str());
+  if (unanswered_.due()) {
+    ROS_WARN("no action for %.1f s; publishing %s again", options_.republish_sec, whatIsAwaited().c_str());
+  }
   publisher_.publishAgain();
   published_ = ::ros::WallTime::now();
   health_.count("steps published again");

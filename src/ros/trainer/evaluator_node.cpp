@@ -56,7 +56,7 @@ EvaluatorNode::EvaluatorNode(const Options& options)
 void EvaluatorNode::startWhenPolicyIsThere() {
   const PolicyStatus* policy = client_.policyStatus();
   if (policy == nullptr || policy->weights.empty()) {
-    ROS_INFO_THROTTLE(10, "waiting for a policy with weights");
+    if (progress_.due()) ROS_INFO("waiting for a policy with weights");
     return;
   }
   start_timer_.stop();
@@ -78,7 +78,7 @@ void EvaluatorNode::startWhenPolicyIsThere() {
            evaluation_.task.c_str());
   const auto keep = [this](const learning::Trajectory& trajectory) {
     evaluation_.add(trajectory);
-    ROS_INFO_THROTTLE(10, "%zu/%d episodes", evaluation_.outcomes.size(), options_.episodes);
+    if (progress_.due()) ROS_INFO("%zu/%d episodes", evaluation_.outcomes.size(), options_.episodes);
   };
   client_.start(plan, keep, [this] { finish(); });
 }

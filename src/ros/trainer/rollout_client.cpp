@@ -76,7 +76,7 @@ void RolloutClient::askWhenReady() {
   const std::string missing = obstacle();
   if (!missing.empty()) {
     const bool is_late = ::ros::WallTime::now() - last_news_ > ::ros::WallDuration(kPatienceSec);
-    if (is_late) ROS_INFO_THROTTLE(10, "waiting for %s", missing.c_str());
+    if (is_late && waiting_.due()) ROS_INFO("waiting for %s", missing.c_str());
     return;
   }
   const auto [first, last] = recorder_->missing();

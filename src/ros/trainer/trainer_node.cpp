@@ -128,7 +128,7 @@ void TrainerNode::evaluate() {
   }
   const auto keep = [this, episodes](const learning::Trajectory& trajectory) {
     evaluation_.add(trajectory);
-    ROS_INFO_THROTTLE(10, "held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
+    if (evaluation_progress_.due()) ROS_INFO("held-out episodes: %zu/%d", evaluation_.outcomes.size(), episodes);
   };
   RolloutPlan plan;
   plan.goal.seed = learning::kHeldOutSeed;

@@ -15,6 +15,7 @@
 #include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 #include "early_fusion/ros/simulator/step_publisher.h"
 #include "early_fusion/sim/episode.h"
 
@@ -95,6 +96,7 @@ class SimulatorNode {
   GoalProgress goal_;
   ::ros::Time awaited_;  // the stamp that the next action must have; zero: no action is expected
   ::ros::WallTime published_;
+  WallThrottle unanswered_{30};  // seconds between two warnings
 
   ::ros::Subscriber action_subscriber_;
   ::ros::ServiceServer reset_server_;

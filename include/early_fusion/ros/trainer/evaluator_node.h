@@ -7,6 +7,7 @@
 
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 #include "early_fusion/ros/trainer/rollout_client.h"
 
 namespace early_fusion::nodes {
@@ -43,6 +44,7 @@ class EvaluatorNode {
   Health health_;
   RolloutClient client_;
   learning::Evaluation evaluation_;
+  WallThrottle progress_{10};  // seconds between two lines of the log
   ::ros::WallTimer start_timer_;
 };
 

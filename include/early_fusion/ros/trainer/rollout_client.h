@@ -15,6 +15,7 @@
 #include <string>
 
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 #include "early_fusion/ros/trainer/rollout_recorder.h"
 
 namespace early_fusion::nodes {
@@ -69,6 +70,7 @@ class RolloutClient {
   std::function<void(learning::Trajectory)> on_trajectory_;
   std::function<void()> on_done_;
   bool goal_done_ = false;
+  WallThrottle waiting_{10};   // seconds between two lines of the log
   ::ros::WallTime last_news_;  // the last event of the plan: its begin, a goal, a step, its end
 
   PolicyStatusConstPtr policy_status_;

@@ -9,6 +9,7 @@
 
 #include "early_fusion/learning/training_session.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 #include "early_fusion/ros/trainer/rollout_workers.h"
 
 namespace early_fusion::nodes {
@@ -70,6 +71,7 @@ class TrainerNode {
   std::string weights_id_;
   std::atomic<double> round_done_{0};  // [0, 1] of the round that is being trained
   learning::Evaluation evaluation_;
+  WallThrottle evaluation_progress_{10};  // seconds between two lines of the log
   std::atomic<bool> stop_{false};
   std::future<learning::RoundStatistics> round_;
 };
