@@ -345,7 +345,7 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"export " + path("none.safetensors") + " --out " + path("x.onnx"), "none.safetensors"},
       {exporting, "--out is required"},
       {"export --out " + path("x.onnx"), "weights is required"},
-      {exporting + " --frames words --out -", "frames: 'words' is not allowed; allowed: bytes, float"},
+      {exporting + " --frames words --out -", "frames: 'words' is not one of the choices; allowed: bytes | float"},
       {exporting + " --out " + path("no/x.onnx"), "--out: " + path("no/x.onnx") + ": there is no folder"},
       {exporting + " --out /dev/full", "--out: /dev/full: cannot write"},
       {"evaluate --policy expert --episodes 0", "episodes"},

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <opencv2/dnn.hpp>
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/rollout.h"
 #include "early_fusion/model/policy_file.h"
+#include "early_fusion/model/vision_trunk.h"
 #include "early_fusion/world/world.h"
 #include "parity_case.h"
 
@@ -38,7 +40,7 @@ struct PlayedEpisode {
   std::vector<core::Request> requests;
 };
 
-class PolicyExport : public testing::TestWithParam<std::pair<const char*, int>> {
+class PolicyExport : public testing::TestWithParam<std::pair<std::string, int>> {
  protected:
   static void SetUpTestSuite() {
     world = world::loadWorld("");
@@ -86,10 +88,10 @@ class PolicyExport : public testing::TestWithParam<std::pair<const char*, int>> 
       }
     }
     // A network that hardly depends on its inputs could hide a wrong one.
-    EXPECT_GT((all.colwise().maxCoeff() - all.colwise().minCoeff()).minCoeff(), 0.01f) << all.topRows(9);
+    EXPECT_GT((all.colwise().maxCoeff() - all.colwise().minCoeff()).mean(), 0.04f) << all.topRows(9);
   }
 
-  inline static std::unique_ptr<const world::World> world;
+  inline static std::shared_ptr<const world::World> world;
   inline static std::unique_ptr<PlayedEpisode> played;
 };
 
@@ -108,22 +110,25 @@ TEST_P(PolicyExport, GivesTheSameProbabilitiesInOpenCvAtEachStepOfAnEpisode) {
   PolicyOptions options;
   std::tie(options.kind, options.fusion_block) = GetParam();
   options.precision = "f32";
-  for (const char* spatial_grid : {"true", "false"}) {
+  for (const auto& [spatial_grid, type] : {std::pair("true", nn::OnnxType::kFloat), {"false", nn::OnnxType::kByte}}) {
     options.spatial_grid = spatial_grid;
     SCOPED_TRACE(std::string("spatial grid: ") + spatial_grid);
-    expectSame(*drawnPolicy(options, world->objects.vocabulary()), nn::OnnxType::kFloat);
+    expectSame(*drawnPolicy(options, world->objects.vocabulary()), type);
   }
-  expectSame(*drawnPolicy(options, world->objects.vocabulary()), nn::OnnxType::kByte);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, PolicyExport,
-                         testing::Values(std::pair("early_fusion", 0), std::pair("early_fusion", 1),
-                                         std::pair("early_fusion", 2), std::pair("early_fusion", 3),
-                                         std::pair("late_fusion", 1), std::pair("attention_map", 1),
-                                         std::pair("softmax_attention_map", 1)),
-                         [](const auto& info) {
-                           return std::string(info.param.first) + "_" + std::to_string(info.param.second);
-                         });
+/// Every kind, with the goal joined at every place where there is a choice.
+std::vector<std::pair<std::string, int>> everyNetwork() {
+  std::vector<std::pair<std::string, int>> networks;
+  for (const PolicyKind& kind : policyKinds()) {
+    const bool fuses = std::count(kind.options.begin(), kind.options.end(), "fusion_block") > 0;
+    for (int block = 0; block < (fuses ? kBlocks : 1); ++block) networks.emplace_back(kind.name, block);
+  }
+  return networks;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PolicyExport, testing::ValuesIn(everyNetwork()),
+                         [](const auto& info) { return info.param.first + "_" + std::to_string(info.param.second); });
 
 using ShippedPolicyExport = PolicyExport;
 
