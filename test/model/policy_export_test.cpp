@@ -110,7 +110,8 @@ TEST_P(PolicyExport, GivesTheSameProbabilitiesInOpenCvAtEachStepOfAnEpisode) {
   PolicyOptions options;
   std::tie(options.kind, options.fusion_block) = GetParam();
   options.precision = "f32";
-  for (const auto& [spatial_grid, type] : {std::pair("true", nn::OnnxType::kFloat), {"false", nn::OnnxType::kByte}}) {
+  for (const auto& [spatial_grid, type] :
+       {std::pair("true", nn::OnnxType::kFloat), std::pair("false", nn::OnnxType::kByte)}) {
     options.spatial_grid = spatial_grid;
     SCOPED_TRACE(std::string("spatial grid: ") + spatial_grid);
     expectSame(*drawnPolicy(options, world->objects.vocabulary()), type);
