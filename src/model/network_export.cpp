@@ -1,6 +1,4 @@
 // NetworkPolicy::addTo(): the network as nodes of an ONNX graph.
-#include <stdexcept>
-
 #include "early_fusion/model/network_policy.h"
 #include "early_fusion/nn/pooling.h"
 #include "early_fusion/nn/spatial_grid.h"
@@ -57,14 +55,17 @@ class Graph {
   }
 
  private:
+  /// @param name of a parameter or of a running statistic.
   std::string tensor(const std::string& name) {
-    for (const nn::TensorSlice& slice : parameters_.parameterSlices()) {
-      if (slice.name == name) return model_.addConstant(name, slice.shape, parameters_.values().data() + slice.offset);
+    addConstant(name, parameters_.parameterSlices(), parameters_.values());
+    addConstant(name, parameters_.bufferSlices(), parameters_.buffers());
+    return name;
+  }
+
+  void addConstant(const std::string& name, const std::vector<nn::TensorSlice>& slices, const Eigen::VectorXf& values) {
+    for (const nn::TensorSlice& slice : slices) {
+      if (slice.name == name) model_.addConstant(name, slice.shape, values.data() + slice.offset);
     }
-    for (const nn::TensorSlice& slice : parameters_.bufferSlices()) {
-      if (slice.name == name) return model_.addConstant(name, slice.shape, parameters_.buffers().data() + slice.offset);
-    }
-    throw std::logic_error("no parameter " + name);
   }
 
   nn::OnnxModel& model_;
