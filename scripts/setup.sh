@@ -25,7 +25,7 @@ debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport
   python3-actionlib python3-diagnostic-msgs python3-rosbag ros-actionlib-msgs ros-core ros-diagnostic-msgs
   ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs ros-trajectory-msgs
   ros-visualization-msgs rosbash)
-for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-matplotlib python3-pil python3-rostest)
+for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-matplotlib python3-onnx python3-pil python3-rostest)
 
 # Installs the missing ones of the given Debian packages and prints their names.
 install_missing() {

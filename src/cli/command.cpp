@@ -12,6 +12,7 @@ void addCommands(CLI::App& app) {
   addRender(app);
   addRetention(app);
   addInspect(app);
+  addExport(app);
   addUrdf(app);
 }
 

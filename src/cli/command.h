@@ -17,6 +17,7 @@ void addRetention(CLI::App& app);
 void addInspect(CLI::App& app);
 void addUrdf(CLI::App& app);
 void addExperiment(CLI::App& app);
+void addExport(CLI::App& app);
 
 /// Declares all subcommands.
 void addCommands(CLI::App& app);

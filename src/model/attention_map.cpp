@@ -53,6 +53,15 @@ void AttentionMap::predictRow(int thread, const core::FrameStack& frames, const 
   std::copy(goal, goal + options().channels, features + options().channels);
 }
 
+std::string AttentionMap::addFeaturesTo(nn::OnnxModel& model, const std::string& map, const std::string& goal) const {
+  const std::string regions = model.reshape(map, {options().channels, trunk().shape().regions()}, "regions");
+  const std::string scores = model.addNode("MatMul", {goal, regions}, "scores");
+  const bool linear = pooling_.kind() == nn::AttentionWeights::kLinear;
+  const std::string weights = linear ? scores : model.softmax(scores, "attention");
+  const std::string rows = model.transpose(regions, {1, 0}, "regions_as_rows");
+  return model.concat({model.addNode("MatMul", {weights, rows}, "pooled"), goal}, "features");
+}
+
 std::optional<Eigen::MatrixXf> AttentionMap::attention(const Observation& observation) {
   predictFeatures(observation);
   const int edge = trunk().shape().mapEdge();

@@ -27,4 +27,9 @@ void EarlyFusion::predictRow(int thread, const core::FrameStack& frames, const f
   trunk().predict(thread, frames, goal, features);
 }
 
+std::string EarlyFusion::addFeaturesTo(nn::OnnxModel& model, const std::string& map,
+                                       const std::string& /*goal*/) const {
+  return model.addNode("Flatten", {map}, "features");
+}
+
 }  // namespace early_fusion::model

@@ -41,4 +41,8 @@ void LateFusion::predictRow(int thread, const core::FrameStack& frames, const fl
   std::copy(goal, goal + options().channels, features + trunk().shape().mapSize());
 }
 
+std::string LateFusion::addFeaturesTo(nn::OnnxModel& model, const std::string& map, const std::string& goal) const {
+  return model.concat({model.addNode("Flatten", {map}, "flat_map"), goal}, "features");
+}
+
 }  // namespace early_fusion::model

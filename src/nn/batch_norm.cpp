@@ -7,7 +7,6 @@ namespace early_fusion::nn {
 
 namespace {
 
-constexpr double kEpsilon = 1e-5;
 constexpr double kMomentum = 0.1;
 
 }  // namespace
@@ -62,10 +61,10 @@ void BatchNorm::finishForward(int images, int positions, Normalisation normalisa
     running_mean[c] = static_cast<float>((1 - kMomentum) * running_mean[c] + kMomentum * mean);
     running_variance[c] = static_cast<float>((1 - kMomentum) * running_variance[c] + kMomentum * unbiased);
     batch_mean_[c] = mean;
-    batch_inverse_deviation_[c] = 1.0 / std::sqrt(variance + kEpsilon);
+    batch_inverse_deviation_[c] = 1.0 / std::sqrt(variance + kNormEpsilon);
     const bool running = normalisation == Normalisation::kRunning;
     mean_[c] = running ? running_mean[c] : mean;
-    inverse_deviation_[c] = running ? 1.0 / std::sqrt(running_variance[c] + kEpsilon) : batch_inverse_deviation_[c];
+    inverse_deviation_[c] = running ? 1.0 / std::sqrt(running_variance[c] + kNormEpsilon) : batch_inverse_deviation_[c];
     scale_[c] = static_cast<float>(weight[c] * inverse_deviation_[c]);
     shift_[c] = static_cast<float>(bias[c] - weight[c] * inverse_deviation_[c] * mean_[c]);
   }
@@ -76,7 +75,7 @@ void BatchNorm::loadRunningStatistics() {
   const auto bias = parameters_.values().segment(bias_, channels_).array().cast<double>();
   const auto mean = parameters_.buffers().segment(running_mean_, channels_).array().cast<double>();
   const auto variance = parameters_.buffers().segment(running_variance_, channels_).array().cast<double>();
-  const Eigen::ArrayXd scale = weight / (variance + kEpsilon).sqrt();
+  const Eigen::ArrayXd scale = weight / (variance + kNormEpsilon).sqrt();
   inference_scale_ = scale.cast<float>();
   inference_shift_ = (bias - scale * mean).cast<float>();
 }

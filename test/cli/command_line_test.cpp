@@ -12,6 +12,7 @@
 
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
+#include "early_fusion/model/policy_export.h"
 #include "early_fusion/model/policy_file.h"
 #include "early_fusion/model/policy_kinds.h"
 
@@ -64,6 +65,7 @@ TEST_F(CommandLine, HelpListsEveryCommandAndWhatItTakes) {
         "--out"}},
       {"retention", {"--run", "--out", "--trajectories", "--evaluate-every", "--evaluation-episodes", "--seed"}},
       {"inspect", {"weights", "--task", "--world", "--rewrite"}},
+      {"export", {"weights", "--frames", "--out"}},
       {"urdf", {"part", "--world"}},
       {"experiment", {"file", "--output", "--jobs", "--list", "--collect"}},
       {"train", {"--task"}}};
@@ -270,6 +272,32 @@ TEST_F(CommandLine, InspectRefusesADamagedFileAndAddsADigestToAForeignOne) {
   EXPECT_TRUE(nn::WeightsFile::read(path("new.safetensors")).has_digest);
 }
 
+TEST_F(CommandLine, ExportsAPolicyToAFileAndToStandardOutput) {
+  const std::string shipped = core::shareFolder() + "/models/simple.safetensors";
+  const nn::WeightsFile file = nn::WeightsFile::read(shipped);
+  const auto exported = [&](nn::OnnxType frames) {
+    return model::exportOnnx(*model::loadPolicy(file, shipped), frames, {file.metadata.begin(), file.metadata.end()});
+  };
+  ASSERT_EQ(run("export " + shipped + " --out " + path("policy.onnx")), 0) << errors_;
+  EXPECT_EQ(output_ + errors_, "");
+  EXPECT_TRUE(core::readFile(path("policy.onnx")) == exported(nn::OnnxType::kByte));
+  ASSERT_EQ(run("export " + shipped + " --frames float --out -"), 0) << errors_;
+  EXPECT_TRUE(output_ == exported(nn::OnnxType::kFloat));
+}
+
+TEST_F(CommandLine, AnExportThatCannotBeWrittenLeavesTheFilesAsTheyAre) {
+  const std::string shipped = core::shareFolder() + "/models/simple.safetensors";
+  fs::copy_file(shipped, path("w.safetensors"));
+  EXPECT_EQ(run("export " + path("w.safetensors") + " --out " + path("w.safetensors")), 1);
+  EXPECT_NE(errors_.find("w.safetensors is the weights file itself; name another file"), std::string::npos) << errors_;
+  EXPECT_TRUE(core::readFile(path("w.safetensors")) == core::readFile(shipped));
+  core::writeFileAtomically(path("old.onnx"), "old");
+  core::writeFileAtomically(path("cut.safetensors"), core::readFile(shipped).substr(0, 5000));
+  EXPECT_EQ(run("export " + path("cut.safetensors") + " --out " + path("old.onnx")), 1);
+  EXPECT_NE(errors_.find("cut.safetensors: the file is damaged"), std::string::npos) << errors_;
+  EXPECT_EQ(core::readFile(path("old.onnx")), "old");
+}
+
 TEST_F(CommandLine, AStoppedTrainingSaysWhatIsKeptAndHowToGoOn) {
   core::writeFileAtomically(path("tiny.yaml"), "{instances: 2, requested: 1, steps: 3}");
   const std::string folder = path("my run");
@@ -318,6 +346,7 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
 }
 
 TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
+  const std::string exporting = "export " + core::shareFolder() + "/models/simple.safetensors";
   const std::pair<std::string, std::string> mistakes[] = {
       {"train --output " + path("r") + " --channels 20", "channels"},
       {"train --output " + path("r") + " --preset quick", "quick"},
@@ -335,6 +364,14 @@ TEST_F(CommandLine, MistakesAreErrorsThatNameThem) {
       {"inspect --task simple --rewrite " + path("x.safetensors"), "--rewrite requires weights"},
       {"inspect --task simple --world", "--task excludes --world"},
       {"inspect " + core::shareFolder() + "/config/world.yaml", "world.yaml: not a safetensors file, but a text"},
+      {"export " + core::shareFolder() + "/config/world.yaml --out " + path("x.onnx"),
+       "world.yaml: not a safetensors file, but a text"},
+      {"export " + path("none.safetensors") + " --out " + path("x.onnx"), "none.safetensors"},
+      {exporting, "--out is required"},
+      {"export --out " + path("x.onnx"), "weights is required"},
+      {exporting + " --frames words --out -", "frames: 'words' is not one of the choices; allowed: bytes | float"},
+      {exporting + " --out " + path("no/x.onnx"), "--out: " + path("no/x.onnx") + ": there is no folder"},
+      {exporting + " --out /dev/full", "--out: /dev/full: cannot write"},
       {"evaluate --policy expert --episodes 0", "episodes"},
       {"evaluate --policy expert --task medium --pairs held_out", "held_out_pairs is 0"},
       {"evaluate --policy expert --pairs some", "some"},

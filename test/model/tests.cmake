@@ -15,10 +15,18 @@ early_fusion_add_test(model second_branch_test)
 early_fusion_add_test(model vision_trunk_test)
 early_fusion_add_test(model warm_start_test)
 
+# OpenCV reads the exported network. It sees the frames of an episode.
+if(TARGET opencv_dnn)
+  early_fusion_add_test(model policy_export_test ${PROJECT_NAME}_learning opencv_core opencv_dnn)
+else()
+  early_fusion_skip_test(model_policy_export_test
+    "OpenCV's module dnn was not found when the build was configured (Debian: libopencv-dnn-dev)")
+endif()
+
 # The second implementation that the network is checked against.
-foreach(name libtorch_golden_test libtorch_parity_test)
+foreach(name libtorch_golden_test libtorch_parity_test libtorch_weights_test)
   if(Torch_FOUND)
-    early_fusion_add_test(model ${name} torch torch_cpu c10)
+    early_fusion_add_test(model ${name} torch torch_cpu c10 nlohmann_json::nlohmann_json)
     target_include_directories(model_${name} SYSTEM PRIVATE ${TORCH_INCLUDE_DIRS})
   else()
     early_fusion_skip_test(model_${name} "libtorch was not found when the build was configured (Debian: libtorch-dev)")

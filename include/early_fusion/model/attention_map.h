@@ -24,6 +24,7 @@ class AttentionMap : public NetworkPolicy {
   void backward(const FrameStackBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures,
                 nn::Matrix& dgoals) override;
   void predictRow(int thread, const core::FrameStack& frames, const float* goal, float* features) override;
+  std::string addFeaturesTo(nn::OnnxModel& model, const std::string& map, const std::string& goal) const override;
 
   nn::AttentionPooling pooling_;
   nn::Matrix maps_, dmaps_;                  // (frame stacks, mapSize())

@@ -15,6 +15,7 @@ class LateFusion : public NetworkPolicy {
   void backward(const FrameStackBatch& batch, const nn::Matrix& goals, const nn::Matrix& dfeatures,
                 nn::Matrix& dgoals) override;
   void predictRow(int thread, const core::FrameStack& frames, const float* goal, float* features) override;
+  std::string addFeaturesTo(nn::OnnxModel& model, const std::string& map, const std::string& goal) const override;
 
   nn::Matrix maps_, dmaps_;  // (frame stacks, mapSize())
 };

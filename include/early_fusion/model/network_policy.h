@@ -29,6 +29,7 @@ class NetworkPolicy : public TrainablePolicy {
   double lossAndGradients(const std::vector<Sample>& samples, std::uint64_t dropout_seed) override;
   int featureCount() const override { return static_cast<int>(thread_features_.cols()); }
   void predictFeatures(const std::vector<Observation>& observations, nn::Matrix& features) override;
+  std::string addTo(nn::OnnxModel& model, const std::string& frame_stack, const std::string& counts) const override;
 
  protected:
   /// @param feature_count the number of inputs of the head.
@@ -36,6 +37,7 @@ class NetworkPolicy : public TrainablePolicy {
                 const VisionTrunkShape& trunk_shape, int feature_count);
 
   VisionTrunk& trunk() { return *trunk_; }
+  const VisionTrunk& trunk() const { return *trunk_; }
   int threads() const { return threads_; }
 
   /// predictRow() of the observation, for what a kind keeps of it.
@@ -58,6 +60,10 @@ class NetworkPolicy : public TrainablePolicy {
   /// Inference of one observation: goal (channels) -> features (feature_count). @param thread as
   /// VisionTrunk::predict().
   virtual void predictRow(int thread, const core::FrameStack& frames, const float* goal, float* features) = 0;
+
+  /// predictRow() as nodes of an ONNX graph. @param map names the trunk's output (1,C,edge,edge).
+  /// @param goal names (1,channels). @return the name of the features (1,feature_count).
+  virtual std::string addFeaturesTo(nn::OnnxModel& model, const std::string& map, const std::string& goal) const = 0;
 
   void refreshWeights();
   void refreshInference();

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "early_fusion/model/goal_policy.h"
 #include "early_fusion/model/sample.h"
 #include "early_fusion/nn/batch_norm.h"
+#include "early_fusion/nn/onnx_model.h"
 #include "early_fusion/nn/parameters.h"
 #include "early_fusion/nn/tiled_goal.h"
 
@@ -37,6 +39,10 @@ class TrainablePolicy : public GoalPolicy {
   /// Inference up to the head, for another network on the same features.
   /// @param features (observations, featureCount()); may have more rows.
   virtual void predictFeatures(const std::vector<Observation>& observations, nn::Matrix& features) = 0;
+
+  /// Adds inference in f32 to an ONNX graph. @param frame_stack names (1,9,S,S), as nn::stackFrames() with the factor
+  /// nn::kByteScale. @param counts names (1,items). @return the name of the probabilities, (1,7).
+  virtual std::string addTo(nn::OnnxModel& model, const std::string& frame_stack, const std::string& counts) const = 0;
 };
 
 }  // namespace early_fusion::model

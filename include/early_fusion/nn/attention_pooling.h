@@ -18,6 +18,8 @@ class AttentionPooling {
   AttentionPooling(AttentionWeights kind, int channels, int regions)
       : kind_(kind), channels_(channels), regions_(regions), dscores_(regions) {}
 
+  AttentionWeights kind() const { return kind_; }
+
   /// map (channels, regions), query (channels) -> weights (regions), pooled (channels). Threads may call at a time.
   void forward(const float* map, const float* query, float* weights, float* pooled) const;
 
