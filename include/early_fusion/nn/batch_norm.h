@@ -17,8 +17,9 @@ enum class Normalisation {
 /// Added to the variance, as PyTorch does.
 inline constexpr double kNormEpsilon = 1e-5;
 
-/// Batch normalisation over (images, H, W), per channel, as PyTorch's BatchNorm2d (eps kNormEpsilon, momentum 0.1, the running
-/// variance unbiased). It turns sums into a scale and a shift for each channel, which the functions of pooling.h apply.
+/// Batch normalisation over (images, H, W), per channel, as PyTorch's BatchNorm2d (eps kNormEpsilon, momentum 0.1, the
+/// running variance unbiased). It turns sums into a scale and a shift for each channel, which the functions of
+/// pooling.h apply.
 ///
 /// Sums are kept for each image and added in the images' order, so the result has the same bits for any number of
 /// threads.
