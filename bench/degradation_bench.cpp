@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/ros/policy/acting_policy.h"
@@ -138,5 +139,10 @@ int main(int argc, char** argv) {
   app.add_option("--episodes", options.episodes, "number of episodes of each task")->capture_default_str();
   app.add_option("--seed", options.seed, "seed of the episodes")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  early_fusion::bench::run(options);
+  try {
+    early_fusion::bench::run(options);
+  } catch (const early_fusion::core::Error& error) {
+    std::fprintf(stderr, "degradation_bench: %s\n", error.what());
+    return 1;
+  }
 }

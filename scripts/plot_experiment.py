@@ -163,7 +163,11 @@ def main():
         panel.set_title(name and f"{options.panel} {name}", fontsize="medium")
     axes[0][0].set_ylim(bottom=0)
     axes[0][0].set_ylabel(LABELS.get(options.measure, options.measure))
-    axes[0][-1].legend(frameon=False)
+    lines = {}  # by name: a panel may lack some
+    for panel in axes[0]:
+        for handle, name in zip(*panel.get_legend_handles_labels()):
+            lines.setdefault(name, handle)
+    axes[0][-1].legend(lines.values(), lines.keys(), frameon=False)
     save(figure, options.out)
 
 

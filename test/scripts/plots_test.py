@@ -66,7 +66,7 @@ class Plots(unittest.TestCase):
 
     def test_a_panel_for_each_task_with_a_curve_for_each_kind(self):
         texts = self.texts("plot_experiment.py", self.results, "--panel", "task", "--where", "channels=16")
-        for text in ("task hard", "task simple", "trajectories", "F1", "early_fusion"):
+        for text in ("task hard", "task simple", "trajectories", "F1", "early_fusion", "late_fusion"):
             self.assertIn(text, texts)
 
     def test_bars_across_words_and_a_line_across_numbers(self):
