@@ -17,8 +17,12 @@ case "${1:-}" in
 esac
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libcli11-dev libdnnl-dev libeigen3-dev
+libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev libstb-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev)
+case "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" in
+  bullseye | focal) ;;  # no package of CLI11: CMake downloads it
+  *) libraries+=(libcli11-dev) ;;
+esac
 debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport-dev
   libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libtf2-ros-dev
   libtrajectory-msgs-dev libvisualization-msgs-dev
