@@ -141,8 +141,6 @@ mount_native_programs() {
 
 test_arm64() {
   local folder=$platforms/bookworm-arm64 native=$platforms/bookworm
-  [ -e /proc/sys/fs/binfmt_misc/qemu-aarch64 ] ||
-    fail "arm64 programs do not run; install qemu-user-static and binfmt-support: update-binfmts --enable qemu-aarch64"
   make_chroot "$native" bookworm amd64
   make_chroot "$folder" bookworm arm64
   install "$native" g++-aarch64-linux-gnu ccache
@@ -168,6 +166,8 @@ esac
 [ "$(id -u)" -eq 0 ] || fail "needs root, for chroots and mounts"
 command -v debootstrap >/dev/null || fail "needs debootstrap: apt-get install debootstrap"
 if [ -z "${EARLY_FUSION_NAMESPACE:-}" ]; then
+  [ "$1" != arm64 ] || [ -e /proc/sys/fs/binfmt_misc/qemu-aarch64 ] || fail "arm64 programs do not run here:
+install qemu-user-static and binfmt-support, then update-binfmts --enable qemu-aarch64"
   # Mounts and processes end with the namespace, however the script ends.
   EARLY_FUSION_NAMESPACE=1 exec unshare --mount --pid --fork --kill-child --mount-proc "${BASH_SOURCE[0]}" "$@"
 fi
