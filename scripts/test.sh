@@ -6,6 +6,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh --tests
 . scripts/ros_environment.sh
 status=0
-ctest --test-dir build --output-on-failure "$@" || status=$?
+(cd build && ctest --output-on-failure "$@") || status=$?
 /usr/bin/python3 test/skipped_tests.py build/test_results/early_fusion || true
 exit "$status"

@@ -10,17 +10,11 @@
 #include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/core/number_text.h"
 
 namespace early_fusion::core {
 
 namespace {
-
-/// The shortest text that parses to the same number.
-std::string toText(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  return std::string(buffer, result.ptr);
-}
 
 /// @throws Error unless the whole of `text` is a number of type T.
 template <class T>
@@ -30,6 +24,13 @@ T parseNumber(const std::string& text, const char* expected) {
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) throw Error(std::string("is not ") + expected);
   return value;
+}
+
+template <>
+double parseNumber(const std::string& text, const char* expected) {
+  const std::optional<double> value = parseDouble(text);
+  if (!value) throw Error(std::string("is not ") + expected);
+  return *value;
 }
 
 void emit(const std::vector<Option>& options, YAML::Emitter& emitter) {
@@ -76,8 +77,8 @@ void OptionSet::add(const std::string& name, double& field, double low, double h
     if (!(value >= low && value <= high)) throw Error("is out of range");
     field = value;
   };
-  const auto get = [&field] { return toText(field); };
-  insert({name, unit, "[" + toText(low) + ", " + toText(high) + "]", get(), help, set, get});
+  const auto get = [&field] { return shortestText(field); };
+  insert({name, unit, "[" + shortestText(low) + ", " + shortestText(high) + "]", get(), help, set, get});
 }
 
 void OptionSet::add(const std::string& name, std::uint64_t& field, const std::string& help) {

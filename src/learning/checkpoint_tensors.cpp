@@ -13,7 +13,7 @@ nn::StoredTensor store(const char* dtype, const T* values, std::size_t count, st
   return {dtype, std::move(shape), std::string(reinterpret_cast<const char*>(values), count * sizeof(T))};
 }
 
-const nn::StoredTensor& find(const nn::WeightsFile& file, const std::string& name, const std::string& dtype,
+const nn::StoredTensor& find(const nn::WeightsFile& file, const std::string& name, const char* dtype,
                              std::size_t dimensions, const std::string& source) {
   const auto found = file.tensors.find(name);
   if (found == file.tensors.end()) {

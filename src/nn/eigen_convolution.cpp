@@ -85,7 +85,7 @@ class StripConvolution {
 
  private:
   /// Enough strips for the cores of a robot's computer, and strips large enough to pay for packing the weights.
-  int stripRows() const { return std::max(2, height_ / 8); }
+  int stripRows() const { return std::max(8, height_ / 8); }
 
   int in_, out_, height_, width_;
   Eigen::MatrixXf weights_[kKernelEdge];

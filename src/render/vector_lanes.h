@@ -10,6 +10,12 @@
 #include <immintrin.h>
 #endif
 
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define EARLY_FUSION_HAS_SHUFFLEVECTOR  // GCC since version 12
+#endif
+#endif
+
 namespace early_fusion::render {
 
 /// The number of elements of a vector. Every loop of the rasterizer uses it as its step. The results have the same bits
@@ -85,9 +91,19 @@ inline FloatLanes squareRoot(FloatLanes a) {
 
 namespace detail {
 
+/// The elements of a and b, laid end to end, that have these numbers.
+template <int... kNumbers, class Lanes>
+Lanes shuffled(Lanes a, Lanes b) {
+#if defined(EARLY_FUSION_HAS_SHUFFLEVECTOR)
+  return __builtin_shufflevector(a, b, kNumbers...);
+#else
+  return __builtin_shuffle(a, b, IntLanes{kNumbers...});
+#endif
+}
+
 template <int... I>
 IntLanes firstOfFours(IntLanes a, std::integer_sequence<int, I...>) {
-  return __builtin_shufflevector(a, a, (I / 4 * 4)...);
+  return shuffled<(I / 4 * 4)...>(a, a);
 }
 
 }  // namespace detail
@@ -123,13 +139,19 @@ namespace detail {
 
 using Four __attribute__((vector_size(16))) = float;
 using Eight __attribute__((vector_size(32))) = float;
+using Sixteen __attribute__((vector_size(64))) = float;
 template <class Half>
 auto joined(Half a, Half b) {
+#if defined(EARLY_FUSION_HAS_SHUFFLEVECTOR)
   if constexpr (sizeof(Half) == sizeof(Four)) {
     return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
   } else {
     return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   }
+#else
+  const Half both[] = {a, b};
+  return loadLanes<std::conditional_t<sizeof(Half) == sizeof(Four), Eight, Sixteen> >(both);
+#endif
 }
 
 /// kLanes numbers from the records laid end to end, from number `first` on.
@@ -151,18 +173,18 @@ FloatLanes laidEndToEnd(const float* base, const std::int32_t* offset, int first
 
 template <int... I>
 FloatLanes evenLanes(FloatLanes a, FloatLanes b, std::integer_sequence<int, I...>) {
-  return __builtin_shufflevector(a, b, (2 * I)...);
+  return shuffled<(2 * I)...>(a, b);
 }
 
 template <int... I>
 FloatLanes oddLanes(FloatLanes a, FloatLanes b, std::integer_sequence<int, I...>) {
-  return __builtin_shufflevector(a, b, (2 * I + 1)...);
+  return shuffled<(2 * I + 1)...>(a, b);
 }
 
 /// Lanes first, first + 1, ... of a and b in turns.
 template <int kFirst, int... I>
 FloatLanes interleavedLanes(FloatLanes a, FloatLanes b, std::integer_sequence<int, I...>) {
-  return __builtin_shufflevector(a, b, (kFirst + I / 2 + (I % 2) * kLanes)...);
+  return shuffled<(kFirst + I / 2 + (I % 2) * kLanes)...>(a, b);
 }
 
 }  // namespace detail

@@ -12,14 +12,20 @@ namespace {
 constexpr float kAnyError = 1.f;       // a share of the mesh's extent: the triangle count is the limit, not the error
 constexpr double kCloseEnough = 1.05;  // a share of the target
 
+#if MESHOPTIMIZER_VERSION >= 160
+constexpr auto kSloppily = [](auto... arguments) { return meshopt_simplifySloppy(arguments..., kAnyError); };
+#else  // takes no error
+constexpr auto kSloppily = [](auto... arguments) { return meshopt_simplifySloppy(arguments...); };
+#endif
+
 std::vector<std::uint32_t> collapseEdges(const MeshPart& part, std::size_t target, bool across_seams) {
   const float* positions = part.vertices.front().position.data();
   const std::vector<std::uint32_t>& from = part.indices;
   std::vector<std::uint32_t> to(from.size());
-  to.resize(across_seams ? meshopt_simplifySloppy(to.data(), from.data(), from.size(), positions, part.vertices.size(),
-                                                  sizeof(Vertex), target, kAnyError, nullptr)
+  to.resize(across_seams ? kSloppily(to.data(), from.data(), from.size(), positions, part.vertices.size(),
+                                     sizeof(Vertex), target)
                          : meshopt_simplify(to.data(), from.data(), from.size(), positions, part.vertices.size(),
-                                            sizeof(Vertex), target, kAnyError, 0, nullptr));
+                                            sizeof(Vertex), target, kAnyError));
   return to;
 }
 

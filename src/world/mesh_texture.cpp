@@ -22,6 +22,12 @@
 #define STBI_MAX_DIMENSIONS 16384
 #include <stb_image.h>
 
+#if !defined(AI_MATKEY_BASE_COLOR)  // assimp 5.0 has glTF's names
+#include <assimp/pbrmaterial.h>
+#define AI_MATKEY_BASE_COLOR AI_MATKEY_GLTF_PBRMETALLICROUGHNESS_BASE_COLOR_FACTOR
+#define AI_MATKEY_ROUGHNESS_FACTOR AI_MATKEY_GLTF_PBRMETALLICROUGHNESS_ROUGHNESS_FACTOR
+#endif
+
 namespace early_fusion::world {
 
 namespace {

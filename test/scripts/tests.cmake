@@ -19,3 +19,5 @@ set_tests_properties(scripts_isolated_test PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts_installed_package_test
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/installed_package_test.py
                  ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+add_test(NAME scripts_test_platform_test
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/test_platform_test.py ${PROJECT_SOURCE_DIR})

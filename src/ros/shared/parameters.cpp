@@ -4,19 +4,12 @@
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include <charconv>
-
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/number_text.h"
 
 namespace early_fusion::nodes {
 
 namespace {
-
-std::string shortestText(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  return std::string(buffer, result.ptr);
-}
 
 /// roslaunch guesses types ("1" becomes an int, "true" a bool). An option parses text itself, so the value is converted
 /// back to text.
@@ -27,7 +20,7 @@ std::string toText(XmlRpc::XmlRpcValue& value, const std::string& parameter) {
     case XmlRpc::XmlRpcValue::TypeInt:
       return std::to_string(static_cast<int&>(value));
     case XmlRpc::XmlRpcValue::TypeDouble:
-      return shortestText(static_cast<double&>(value));
+      return core::shortestText(static_cast<double&>(value));
     case XmlRpc::XmlRpcValue::TypeBoolean:
       return static_cast<bool&>(value) ? "true" : "false";
     default:
