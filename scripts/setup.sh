@@ -32,7 +32,8 @@ debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport
   ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs ros-trajectory-msgs
   ros-visualization-msgs rosbash)
 for_tests=(libbenchmark-dev libgtest-dev libtorch-dev python3-matplotlib python3-pil python3-rostest)
-for_sanitizers=(clang libomp-dev)  # libFuzzer, and an OpenMP whose synchronisation the thread sanitizer knows
+# libFuzzer, names in the reports, and an OpenMP whose synchronisation the thread sanitizer knows.
+for_sanitizers=(clang libclang-rt-dev libomp-dev llvm)
 
 # Installs the missing ones of the given Debian packages and prints their names.
 install_missing() {

@@ -3,8 +3,9 @@
 #
 #   scripts/test.sh -R nn
 #
-# With SANITIZE=address,undefined, it runs them under these sanitizers, except those that start whole ROS nodes. With
-# SANITIZE=thread, it runs the tests of what has threads. Each has a build folder of its own.
+# With SANITIZE=address,undefined, it runs them under these sanitizers, except those that need an ordinary build, such as
+# the tests of whole ROS nodes. With SANITIZE=thread, it runs the tests of what has threads. Each has a build folder of
+# its own.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/build_folder.sh
@@ -14,7 +15,7 @@ case "${SANITIZE:-}" in
     wanted=(-L threads)
     scripts/setup.sh --target thread_tests
     ;;
-  *) wanted=(-LE nodes) ;;
+  *) wanted=(-LE ordinary) ;;
 esac
 [ "${SANITIZE:-}" = thread ] || scripts/setup.sh --tests
 . scripts/ros_environment.sh

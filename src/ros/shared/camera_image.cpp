@@ -11,8 +11,7 @@ namespace early_fusion::nodes {
 
 namespace {
 
-constexpr std::uint32_t kLongestEdge = 32767;  // [px] of OpenCV's filters
-constexpr int kBayerMargin = 2;                // [px] from which a converted pixel depends on others
+constexpr int kBayerMargin = 2;  // [px] from which a converted pixel depends on others
 constexpr int kAsIs = -1;
 
 struct Encoding {
