@@ -2,20 +2,26 @@
 # Installs the missing Debian packages, then configures and builds the package in place. It can be run again: it
 # installs and builds only what is missing.
 #
-# Usage: scripts/setup.sh [--tests]
-#   --tests   also installs what the tests and benchmarks need, and builds them
+# Usage: scripts/setup.sh [--tests | --target NAME]
+#   --tests         also installs what the tests and benchmarks need, and builds them
+#   --target NAME   installs the same, and builds only this target
+#
+# SANITIZE=address,undefined scripts/setup.sh --tests   builds with these sanitizers, in build-address-undefined/
 set -euo pipefail
 
+targets=(all)
 case "${1:-}" in
   "") with_tests=OFF ;;
-  --tests) with_tests=ON ;;
+  --tests) with_tests=ON targets=(all tests) ;;
+  --target) with_tests=ON targets=("${2:?setup.sh: --target needs a name}") ;;
   *)
-    sed -n '2,7s/^# \{0,1\}//p' "$0"
+    sed -n '2,10s/^# \{0,1\}//p' "$0"
     [ "$1" = --help ] || { echo "setup.sh: unknown argument '$1'" >&2; exit 2; }
     exit 0
     ;;
 esac
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/build_folder.sh
 
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev libstb-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev)
@@ -32,6 +38,8 @@ case "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" in
   bullseye | focal) ;;
   *) libraries+=(libcli11-dev) for_tests+=(libtorch-dev python3-onnx) ;;
 esac
+# libFuzzer, names in the reports, and an OpenMP whose synchronisation the thread sanitizer knows.
+for_sanitizers=(clang libclang-rt-dev libomp-dev llvm)
 
 # Installs the missing ones of the given Debian packages and prints their names.
 install_missing() {
@@ -54,6 +62,7 @@ install_missing() {
 
 packages=("${libraries[@]}")
 [ "$with_tests" = OFF ] || packages+=("${for_tests[@]}")
+[ -z "${SANITIZE:-}" ] || packages+=("${for_sanitizers[@]}")
 if [ -f /opt/ros/noetic/setup.sh ]; then
   echo "Using ROS from /opt/ros/noetic"
   set +u
@@ -64,15 +73,17 @@ else
 fi
 install_missing "${packages[@]}"
 
-# train.sh and test.sh share one build folder, so train.sh keeps the tests configured.
-if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' build/CMakeCache.txt; then
-  cmake -S . -B build -DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests >build.log 2>&1 ||
-    { cat build.log; exit 1; }
-  sed -n '/^CMake Warning/,/^$/p' build.log
-  rm -f build.log
+settings=(-DCATKIN_ENABLE_TESTING=$with_tests -DEARLY_FUSION_BENCH=$with_tests)
+if [ -n "${SANITIZE:-}" ]; then
+  settings=(-DCATKIN_ENABLE_TESTING=$with_tests -DCMAKE_CXX_COMPILER=clang++ "-DCATKIN_DEVEL_PREFIX=$PWD/$devel"
+    "-DEARLY_FUSION_SANITIZE=$SANITIZE")
 fi
-targets=(all)
-[ "$with_tests" = OFF ] || targets+=(tests)
+# train.sh and test.sh share one build folder, so train.sh keeps the tests configured.
+if [ "$with_tests" = ON ] || ! grep -qs 'CATKIN_ENABLE_TESTING:[A-Z]*=ON' "$build/CMakeCache.txt"; then
+  cmake -S . -B "$build" "${settings[@]}" >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
+  sed -n '/^CMake Warning/,/^$/p' "$build.log"
+  rm -f "$build.log"
+fi
 echo "Building with $(nproc) jobs"
-cmake --build build -j"$(nproc)" --target "${targets[@]}" -- --no-print-directory | grep -vE '^(\[ *[0-9]+%\] Built|Consolidate|Scanning)' || true
-cmake --build build --target "${targets[@]}" -- --no-print-directory >/dev/null
+cmake --build "$build" -j"$(nproc)" --target "${targets[@]}" -- --no-print-directory | grep -vE '^(\[ *[0-9]+%\] Built|Consolidate|Scanning)' || true
+cmake --build "$build" --target "${targets[@]}" -- --no-print-directory >/dev/null

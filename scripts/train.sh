@@ -22,7 +22,7 @@ for argument in "$@"; do
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/setup.sh
+SANITIZE= scripts/setup.sh
 . scripts/ros_environment.sh
 
 output="$PWD/runs/$(date +%Y%m%d-%H%M%S)"

@@ -13,9 +13,20 @@ std::string joined(const std::vector<std::string>& names, const std::string& sep
   return text;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMaxNames = 32;
+  constexpr std::size_t kMaxCharacters = 40;  // of a name
+  std::vector<std::string> shown;
+  for (const std::string& name : names) {
+    if (shown.size() == kMaxNames) return joined(shown) + ", ... (" + std::to_string(names.size()) + " names)";
+    shown.push_back(excerpt(name, kMaxCharacters));
+  }
+  return joined(shown);
+}
+
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind) {
   const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) throw Error("unknown " + kind + " '" + excerpt(name) + "'; known are " + joined(known));
+  if (found == known.end()) throw Error("unknown " + kind + " '" + excerpt(name) + "'; known are " + listed(known));
   return static_cast<int>(found - known.begin());
 }
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 
 namespace early_fusion::learning {
 
@@ -24,7 +25,7 @@ ScoreCurve ScoreCurve::parse(const std::string& csv, const std::string& source) 
     const int read = std::sscanf(line.c_str(), "%" SCNu64 ",%lf,%lf,%lf,%lf,%lf", &point.trajectories, &point.minutes,
                                  &point.f1, &point.precision, &point.recall, &point.agreement);
     if (number == 1 || read != 6) {
-      throw core::Error(source + ": scores, line " + std::to_string(number) + ": '" + line +
+      throw core::Error(source + ": scores, line " + std::to_string(number) + ": '" + core::excerpt(line) +
                         "' is not a line with the columns " + kHeader);
     }
     curve.points_.push_back(point);

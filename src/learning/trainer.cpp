@@ -210,7 +210,7 @@ void Trainer::restorePolicy(const nn::WeightsFile& file, const std::string& sour
   const Eigen::Index size = acting->parameters().values().size();
   if (loaded->vocabulary() != acting->vocabulary() || loaded->parameters().values().size() != size) {
     throw core::Error(source + ": its policy has other items or another network; its items are " +
-                      core::joined(loaded->vocabulary().names()) +
+                      core::listed(loaded->vocabulary().names()) +
                       "; resume with the session's object set and policy options, or start a new session");
   }
   acting = std::move(loaded);

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/world/convex_hull.h"
@@ -23,7 +24,8 @@ Eigen::Isometry3d worldFromLink(const urdf::ModelInterface& model, const std::st
   urdf::LinkConstSharedPtr link = model.getLink(name);
   while (const urdf::JointConstSharedPtr joint = link->parent_joint) {
     if (joint->type != urdf::Joint::FIXED) {
-      throw core::Error(file + ": joint '" + joint->name + "' must be fixed: nothing in the kitchen moves");
+      throw core::Error(file + ": joint '" + core::excerpt(joint->name) +
+                        "' must be fixed: nothing in the kitchen moves");
     }
     world_from_link = toEigen(joint->parent_to_joint_origin_transform) * world_from_link;
     link = model.getLink(joint->parent_link_name);
@@ -35,7 +37,7 @@ std::uint32_t colourOf(const urdf::Visual& visual) {
   if (!visual.material) return kLightGrey;
   const urdf::Color& colour = visual.material->color;
   const auto byte = [](float value) {
-    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
+    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(std::isnan(value) ? 0.f : value, 0.f, 1.f)));
   };
   return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
 }
@@ -114,7 +116,7 @@ Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_lin
   const urdf::LinkConstSharedPtr counter = model->getLink(counter_link);
   if (!counter) {
     throw core::Error(urdf_file + ": no link '" + counter_link +
-                      "'; its links are: " + core::joined(core::keys(model->links_)));
+                      "'; its links are: " + core::listed(core::keys(model->links_)));
   }
   Kitchen kitchen;
   kitchen.counter_top =
@@ -128,7 +130,7 @@ Kitchen loadKitchen(const std::string& urdf_file, const std::string& counter_lin
       }
       addObstacles(*link, world_from_link, kitchen.counter_top.z, urdf_file, max_triangles, kitchen.obstacles);
     } catch (const core::Error& error) {
-      throw core::Error(urdf_file + ": link '" + name + "': " + error.what());
+      throw core::Error(urdf_file + ": link '" + core::excerpt(name) + "': " + error.what());
     }
   }
   return kitchen;

@@ -203,13 +203,25 @@ void checkInChild(const std::string& path) {
                     (slow ? "does not finish it in time" : "crashes on it"));
 }
 
+/// Whether a line's first word is end_header. Assimp ends lines at four characters.
+bool hasEndOfHeader(const std::string& ply) {
+  const std::string word = "end_header", blanks = " \t", line_ends = std::string("\n\r\f\0", 4);
+  for (std::size_t at = ply.find(word); at != std::string::npos; at = ply.find(word, at + 1)) {
+    const std::size_t before = at == 0 ? std::string::npos : ply.find_last_not_of(blanks, at - 1);
+    const std::size_t after = at + word.size();
+    const bool starts_line = before == std::string::npos || line_ends.find(ply[before]) != std::string::npos;
+    const bool ends_word = after == ply.size() || (blanks + line_ends).find(ply[after]) != std::string::npos;
+    if (starts_line && ends_word) return true;
+  }
+  return false;
+}
+
 /// Assimp's importer never ends for a PLY file without the end of its header.
 void checkPly(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".ply") return;
-  if (core::readFile(path, kMaxMeshBytes).find("end_header") != std::string::npos) return;
+  if (extension != ".ply" || hasEndOfHeader(core::readFile(path, kMaxMeshBytes))) return;
   throw core::Error(path + ": cannot be read as a mesh: its header has no end_header");
 }
 

@@ -68,7 +68,7 @@ Texture squareTexture(const cv::Mat& bgr) {
 }
 
 constexpr std::size_t kMaxTextureBytes = std::size_t{256} << 20;
-constexpr std::int64_t kMaxPixels = 64'000'000;  // of a texture: one of 8000 x 8000 fits
+constexpr std::uint64_t kMaxPixels = 64'000'000;  // of a texture: one of 8000 x 8000 fits
 
 std::uint32_t bigEndian(const std::string& bytes, std::size_t at, int count) {
   std::uint32_t value = 0;
@@ -77,28 +77,30 @@ std::uint32_t bigEndian(const std::string& bytes, std::size_t at, int count) {
 }
 
 /// The number of pixels that a PNG or JPEG file claims to have; 0 if it cannot be found.
-std::int64_t claimedPixels(const std::string& bytes) {
+std::uint64_t claimedPixels(const std::string& bytes) {
   if (bytes.compare(1, 3, "PNG") == 0 && bytes.size() >= 24) {
-    return static_cast<std::int64_t>(bigEndian(bytes, 16, 4)) * bigEndian(bytes, 20, 4);
+    return std::uint64_t{bigEndian(bytes, 16, 4)} * bigEndian(bytes, 20, 4);
   }
   if (bytes.compare(0, 2, "\xff\xd8") != 0) return 0;
   for (std::size_t at = 2; at + 9 <= bytes.size() && bytes[at] == '\xff'; at += 2 + bigEndian(bytes, at + 2, 2)) {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);
     const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (is_frame) return static_cast<std::int64_t>(bigEndian(bytes, at + 5, 2)) * bigEndian(bytes, at + 7, 2);
+    if (is_frame) return std::uint64_t{bigEndian(bytes, at + 5, 2)} * bigEndian(bytes, at + 7, 2);
   }
   return 0;
 }
+
+constexpr std::uint64_t kMaxTgaPixelsPerByte = 64;  // a run of 128 pixels has at least two bytes
 
 /// @return an empty image if the bytes are no TGA file.
 cv::Mat decodeTga(const std::string& bytes) {
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || width < 1 || height < 1 ||
-      static_cast<std::int64_t>(width) * height > kMaxPixels) {
-    return cv::Mat();
-  }
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || width < 1 || height < 1) return cv::Mat();
+  // stb_image would fill what a truncated file lacks, which takes seconds for a large image.
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * height;
+  if (pixels > std::min(kMaxPixels, kMaxTgaPixelsPerByte * bytes.size())) return cv::Mat();
   unsigned char* rgb = stbi_load_from_memory(data, size, &width, &height, &channels, 3);
   if (rgb == nullptr) return cv::Mat();
   cv::Mat bgr;
@@ -109,7 +111,7 @@ cv::Mat decodeTga(const std::string& bytes) {
 
 /// @return an empty image if the bytes are none. @throws Error if the image is too large.
 cv::Mat decode(const std::string& bytes, const std::string& where) {
-  const std::int64_t pixels = bytes.size() < 4 ? 0 : claimedPixels(bytes);
+  const std::uint64_t pixels = bytes.size() < 4 ? 0 : claimedPixels(bytes);
   if (pixels > kMaxPixels) {
     throw core::Error(where + " claims to have " + std::to_string(pixels) + " pixels; the maximum is " +
                       std::to_string(kMaxPixels));
@@ -127,7 +129,7 @@ cv::Mat decodeEmbedded(const aiTexture& embedded, const std::string& where) {
   if (embedded.mHeight == 0) {  // a PNG or JPEG file of mWidth bytes
     return decode(std::string(reinterpret_cast<const char*>(embedded.pcData), embedded.mWidth), where);
   }
-  if (static_cast<std::uint64_t>(embedded.mWidth) * embedded.mHeight > static_cast<std::uint64_t>(kMaxPixels)) {
+  if (std::uint64_t{embedded.mWidth} * embedded.mHeight > kMaxPixels) {
     throw core::Error(where + " is larger than " + std::to_string(kMaxPixels) + " pixels");
   }
   cv::Mat bgr(embedded.mHeight, embedded.mWidth, CV_8UC3);

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 #include "urdf_file.h"
 
@@ -14,7 +15,7 @@ urdf::JointConstSharedPtr findJoint(const urdf::ModelInterface& model, const std
                                     const std::string& file) {
   const auto found = model.joints_.find(name);
   if (found != model.joints_.end()) return found->second;
-  const std::string known = core::joined(core::keys(model.joints_));
+  const std::string known = core::listed(core::keys(model.joints_));
   throw core::Error(file + ": no joint '" + name + "'; its joints are: " + (known.empty() ? "none" : known));
 }
 
@@ -68,8 +69,8 @@ Eigen::Isometry3d fixedChain(const urdf::ModelInterface& model, const std::strin
     const urdf::JointConstSharedPtr joint = current->parent_joint;
     if (!joint) throw core::Error(file + ": link '" + link + "' is not connected to " + ends_at);
     if (joint->type != urdf::Joint::FIXED) {
-      throw core::Error(file + ": joint '" + joint->name + "', between " + ends_at + " and link '" + link +
-                        "', must be fixed");
+      throw core::Error(file + ": joint '" + core::excerpt(joint->name) + "', between " + ends_at + " and link '" +
+                        link + "', must be fixed");
     }
     ancestor_from_link = toEigen(joint->parent_to_joint_origin_transform) * ancestor_from_link;
     current = model.getLink(joint->parent_link_name);

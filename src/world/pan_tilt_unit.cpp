@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "pan_tilt_chain.h"
 #include "urdf_file.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double kMinTurn = 0.05;
 
 UnitJoint readJoint(const urdf::Joint& joint, const std::string& file) {
-  const std::string where = file + ": joint '" + joint.name + "'";
+  const std::string where = file + ": joint '" + core::excerpt(joint.name) + "'";
   UnitJoint result;
   result.name = joint.name;
   result.continuous = joint.type == urdf::Joint::CONTINUOUS;
@@ -42,7 +43,7 @@ double middle(const UnitJoint& joint) { return joint.continuous ? 0 : (joint.low
 /// The sign of how a joint turns the view. @throws Error if it turns it hardly or not at all in this direction.
 int signOf(double turn, const UnitJoint& joint, const char* directions, const std::string& file) {
   if (std::abs(turn) > kMinTurn) return turn > 0 ? 1 : -1;
-  throw core::Error(file + ": joint '" + joint.name + "' does not turn the camera " + directions +
+  throw core::Error(file + ": joint '" + core::excerpt(joint.name) + "' does not turn the camera " + directions +
                     " in its image; check the joint's axis, whether pan and tilt are swapped, and the optical frame "
                     "(z forward, x right, y down)");
 }

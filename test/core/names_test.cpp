@@ -18,6 +18,15 @@ TEST(Names, AreJoinedInTheirOrder) {
   EXPECT_EQ(joined(keys(std::map<std::string, int>{{"b", 1}, {"a", 2}})), "a, b");
 }
 
+TEST(Names, ForeignOnesAreListedByExcerpts) {
+  EXPECT_EQ(listed(kNames), "mug, bowl, plate");
+  EXPECT_EQ(listed({std::string(50, 'x'), "b\n"}), std::string(40, 'x') + "... (50 bytes), b?");
+  const std::string most = listed(std::vector<std::string>(32, "a"));
+  EXPECT_EQ(most.substr(most.size() - 6), ", a, a");
+  const std::string many = listed(std::vector<std::string>(100000, "a"));
+  EXPECT_EQ(many, most + ", ... (100000 names)");
+}
+
 TEST(Names, AnUnknownOneIsAnErrorThatListsTheKnown) {
   EXPECT_EQ(indexOf("bowl", kNames, "item"), 1);
   try {

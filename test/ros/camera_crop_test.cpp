@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "early_fusion/core/error.h"
 #include "early_fusion/ros/shared/conversions.h"
 
 namespace early_fusion::nodes {
@@ -64,6 +65,24 @@ TEST(CameraCrop, TheSimulatorsImageIsTakenWhole) {
   expectSquare(crop, 128);
   EXPECT_EQ(crop.x + crop.y, 0);
   expectWarning(crop, {});
+}
+
+TEST(CameraCrop, AnImageThatIsTooLargeIsRefused) {
+  const sensor_msgs::CameraInfo uncalibrated;
+  const auto errorOf = [&](const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* info) -> std::string {
+    try {
+      cropToView(image, info, false, 60);
+    } catch (const core::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  sensor_msgs::Image image;
+  image.width = 0x80000000u;  // negative as an int
+  image.height = 7;
+  EXPECT_EQ(errorOf(image, nullptr), "image 2147483648 x 7 is larger than 32767 px");
+  EXPECT_EQ(errorOf(image, &uncalibrated), "image 2147483648 x 7 is larger than 32767 px");
+  EXPECT_EQ(errorOf(imageOf(32767, 1), &uncalibrated), "");
 }
 
 TEST(CameraCrop, AViewThatIsTooNarrowIsTakenWholeWithAWarningOfWhatItShows) {

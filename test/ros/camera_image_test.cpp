@@ -105,6 +105,7 @@ TEST(PolicyImage, AnUnknownEncodingIsRefusedWithTheKnownOnesAndADepthImageAsSuch
   for (const char* known : {"rgb8", "bayer_rggb8", "yuv422_yuy2", "mono16"}) {
     EXPECT_NE(errorOf("nv21").find(known), std::string::npos) << errorOf("nv21");
   }
+  EXPECT_LT(errorOf(std::string(100000, 'x')).size(), 1000u) << "a foreign text is shown whole";
   EXPECT_NE(errorOf("16UC1").find("depth image"), std::string::npos) << errorOf("16UC1");
 }
 

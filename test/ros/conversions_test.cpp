@@ -145,6 +145,8 @@ TEST_F(ConversionsTest, ASceneThatCannotBeIsRefusedWithTheReason) {
   Scene infinite = scene();
   infinite.instances[1].x = INFINITY;
   EXPECT_NE(errorOf([&] { parse(infinite); }).find("not finite"), std::string::npos);
+  infinite.instances[1].item = std::string(100000, 'x');
+  EXPECT_LT(errorOf([&] { parse(infinite); }).size(), 1000u) << "a foreign text is shown whole";
 
   Scene turned = scene();
   turned.pan = 1000;

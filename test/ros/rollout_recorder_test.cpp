@@ -207,6 +207,10 @@ TEST_F(RolloutRecorderTest, DropsAnEpisodeOfOtherWeightsOrAnotherMode) {
   steps = play(10);
   steps[0].action.mode = "argmax";
   EXPECT_NE(complaint(steps[0]).find("argmax"), std::string::npos);
+  steps = play(10);
+  steps[0].action.weights = steps[0].action.mode = std::string(100000, 'x');
+  EXPECT_NE(complaint(steps[0]).find("xxx... (100000 bytes)"), std::string::npos);
+  EXPECT_LT(complaint(steps[0]).size(), 1000u) << "a foreign text is shown whole";
 }
 
 TEST_F(RolloutRecorderTest, DropsAnEpisodeWhoseStateDoesNotFollowFromItsActions) {

@@ -205,6 +205,8 @@ TEST_F(TexturedMeshTest, RefusesDamagedFiles) {
   EXPECT_EQ(errorOf(write("good.ply", pyramidPly("3 0 2 1"))), "");
   const auto refusal = [&](const std::string& name, const std::string& text) { return errorOf(write(name, text)); };
   EXPECT_NE(refusal("header.ply", "ply\nformat ascii 1.0\n").find("its header has no end_header"), std::string::npos);
+  const std::string in_a_word = replaced(pyramidPly("3 0 2 1"), "\nend_header", "_end_header");
+  EXPECT_NE(refusal("word.ply", in_a_word).find("its header has no end_header"), std::string::npos);
   EXPECT_NE(refusal("index.ply", pyramidPly("3 0 1 900000")).find("out of range"), std::string::npos)
       << refusal("index.ply", pyramidPly("3 0 1 900000"));
   EXPECT_NE(refusal("nan.ply", pyramidPly("3 0 2 1", "nan nan nan")).find("vertex 3 of mesh '' is not finite"),
@@ -228,10 +230,15 @@ TEST_F(TexturedMeshTest, ReadsOnlyRegularFiles) {
 TEST_F(TexturedMeshTest, RefusesATextureThatClaimsTooManyPixels) {
   const std::string square = write("square.obj", kSquare);
   write("square.mtl", "newmtl cloth\nmap_Kd huge.png\n");
-  const std::string size = {0, 0, '\xea', 0x60};  // 60,000
-  write("huge.png",
-        "\x89PNG\r\n\x1a\n" + std::string("\0\0\0\rIHDR", 8) + size + size + std::string("\x08\2\0\0\0", 5));
-  EXPECT_NE(notesOf(square).find("huge.png claims to have 3600000000 pixels"), std::string::npos) << notesOf(square);
+  // The second one overflows a signed number of 64 bits.
+  const std::vector<std::pair<std::string, std::string>> edges = {{{0, 0, '\xea', 0x60}, "3600000000"},
+                                                                  {"\xff\xff\xff\xff", "18446744065119617025"}};
+  for (const auto& [edge, pixels] : edges) {
+    write("huge.png",
+          "\x89PNG\r\n\x1a\n" + std::string("\0\0\0\rIHDR", 8) + edge + edge + std::string("\x08\2\0\0\0", 5));
+    EXPECT_NE(notesOf(square).find("huge.png claims to have " + pixels + " pixels"), std::string::npos)
+        << notesOf(square);
+  }
 }
 
 TEST_F(TexturedMeshTest, ATextureThatCannotBeReadIsNamedAndThePlainColourDrawn) {
@@ -290,6 +297,15 @@ TEST_F(TexturedMeshTest, ReadsTgaTextures) {
   ASSERT_EQ(texture.size, 2);
   EXPECT_EQ(texture.texels,
             (std::vector<std::uint32_t>{rgb(255, 0, 0), rgb(0, 255, 0), rgb(0, 0, 255), rgb(0, 0, 255)}));
+}
+
+/// stb_image would take seconds to fill what is missing.
+TEST_F(TexturedMeshTest, ATgaTextureWithFewerBytesThanItsPixelsNeedIsNone) {
+  const std::string runs_of_8000_squared("\0\0\x0a\0\0\0\0\0\0\0\0\0\x40\x1f\x40\x1f\x18\0\xff\1\2\3", 22);
+  const std::string cloth = write("cloth.tga", runs_of_8000_squared);
+  write("square.mtl", "newmtl cloth\nmap_Kd cloth.tga\n");
+  const std::string notes = notesOf(write("square.obj", kSquare));
+  EXPECT_NE(notes.find(cloth + " is not an image that can be decoded"), std::string::npos) << notes;
 }
 
 /// A box of 0.1 m with a vertex for each corner. @param inwards which way its faces point.

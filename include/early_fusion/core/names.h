@@ -8,6 +8,10 @@ namespace early_fusion::core {
 /// The names with the separator between them: "mug, bowl, plate".
 std::string joined(const std::vector<std::string>& names, const std::string& separator = ", ");
 
+/// The same with excerpts of the first 32 names and, if there are more, their number. For names that come from a file
+/// or a message.
+std::string listed(const std::vector<std::string>& names);
+
 /// The index of `name` in `known`. @param kind what the names are names of, for the error text: "item".
 /// @throws Error "unknown item 'cup'; known are mug, bowl, plate".
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind);

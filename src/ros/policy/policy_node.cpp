@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/model/action_choice.h"
 #include "early_fusion/model/annotation.h"
 #include "early_fusion/ros/shared/camera_image.h"
@@ -158,7 +159,8 @@ void PolicyNode::nameItem(core::Action action, const Request& request) {
 void PolicyNode::onWeights(const Weights& message) {
   try {
     const std::string bytes(message.data.begin(), message.data.end());
-    const std::string source = "weights '" + message.id + "' from topic " + weights_subscriber_.getTopic();
+    const std::string source =
+        "weights '" + core::excerpt(message.id) + "' from topic " + weights_subscriber_.getTopic();
     load(message.id, nn::WeightsFile::parse(bytes, source), source, {message.mode, message.seed, message.precision});
   } catch (const std::exception& error) {
     health_.drop("unusable weights", error.what());

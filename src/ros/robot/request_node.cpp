@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 
@@ -147,7 +148,8 @@ void RequestNode::pick(const Action& action) {
   found.item = action.item;
   found.item_probability = action.item_probability;
   if (!list_.contains(found.item)) {
-    return health_.drop("pick without an item", action.name + " names the item '" + action.item +
+    return health_.drop("pick without an item", core::excerpt(action.name) + " names the item '" +
+                                                    core::excerpt(action.item) +
                                                     "', which is not requested; set ~name_items of policy_node");
   }
   picker_.pick(found, [this, found](bool success, const std::string& message) { onPicked(found, success, message); });

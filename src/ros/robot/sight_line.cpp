@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 
 namespace early_fusion::nodes {
 
@@ -42,7 +43,8 @@ double centreDepth(const sensor_msgs::Image& depth) {
   const bool metres = depth.encoding == encodings::TYPE_32FC1;
   const std::size_t pixel_size = metres ? sizeof(float) : sizeof(std::uint16_t);
   if (!metres && depth.encoding != encodings::TYPE_16UC1 && depth.encoding != encodings::MONO16) {
-    throw core::Error("the depth image has the encoding '" + depth.encoding + "'; it must be 32FC1 [m] or 16UC1 [mm]");
+    throw core::Error("the depth image has the encoding '" + core::excerpt(depth.encoding) +
+                      "'; it must be 32FC1 [m] or 16UC1 [mm]");
   }
   const int rows = static_cast<int>(depth.height), columns = static_cast<int>(depth.width);
   if (rows < kWindow || columns < kWindow || depth.is_bigendian || depth.step < columns * pixel_size ||

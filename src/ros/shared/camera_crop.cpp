@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "early_fusion/core/error.h"
+
 namespace early_fusion::nodes {
 
 namespace {
@@ -112,6 +114,10 @@ void append(std::string& text, const std::string& more) { text += (text.empty() 
 }  // namespace
 
 Crop largestSquare(const sensor_msgs::Image& image) {
+  if (image.width > kLongestEdge || image.height > kLongestEdge) {
+    throw core::Error("image " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                      " is larger than " + std::to_string(kLongestEdge) + " px");
+  }
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
   const int edge = std::min(width, height);
   return {(width - edge) / 2, (height - edge) / 2, edge, edge, ""};
@@ -119,7 +125,8 @@ Crop largestSquare(const sensor_msgs::Image& image) {
 
 Crop cropToView(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* info, bool rectified,
                 double horizontal_fov_deg) {
-  if (info == nullptr || image.width == 0 || image.height == 0) return largestSquare(image);
+  Crop crop = largestSquare(image);
+  if (info == nullptr || crop.width == 0) return crop;
   const Pinhole k{info->K[0], info->K[4], info->K[2], info->K[5]}, p{info->P[0], info->P[5], info->P[2], info->P[6]};
   const double full_width = info->width > 0 ? info->width : image.width;
   const bool first_fits = isPlausible(rectified ? p : k, full_width);
@@ -132,7 +139,6 @@ Crop cropToView(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* 
   const double tangent = std::tan(radians(horizontal_fov_deg) / 2);
   const double width = 2 * seen.fx * tangent, height = 2 * seen.fy * tangent;
   const double shrink = std::min({1.0, image.width / width, image.height / height});
-  Crop crop = largestSquare(image);
   const bool has_axis = isInside(seen.cx, image.width) && isInside(seen.cy, image.height);
   crop.width = std::max(1, static_cast<int>(std::lround(width * shrink)));
   crop.height = std::max(1, static_cast<int>(std::lround(height * shrink)));

@@ -5,13 +5,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 
 namespace early_fusion::nodes {
 
 namespace {
 
-constexpr std::uint32_t kLongestEdge = 32767;  // [px] of OpenCV's filters
-constexpr int kBayerMargin = 2;                // [px] from which a converted pixel depends on others
+constexpr int kBayerMargin = 2;  // [px] from which a converted pixel depends on others
 constexpr int kAsIs = -1;
 
 struct Encoding {
@@ -49,7 +49,7 @@ constexpr Encoding kEncodings[] = {
 
 std::string describe(const sensor_msgs::Image& image) {
   return "image " + std::to_string(image.width) + " x " + std::to_string(image.height) + " with encoding '" +
-         image.encoding + "'";
+         core::excerpt(image.encoding) + "'";
 }
 
 const Encoding& encodingOf(const sensor_msgs::Image& image) {
@@ -135,7 +135,7 @@ core::Image policyImage(const sensor_msgs::Image& image, const Crop& crop, int s
     cv::resize(rgb(part - source.tl()), resized, resized.size(), 0, 0, interpolation);
     return result;
   } catch (const cv::Exception& error) {
-    throw core::Error(describe(image) + " cannot be converted to rgb8: " + error.what());
+    throw core::Error(describe(image) + " cannot be converted to rgb8: " + core::excerpt(error.what(), 200));
   }
 }
 

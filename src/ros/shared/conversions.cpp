@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 
 namespace early_fusion::nodes {
@@ -148,7 +149,7 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary,
   SceneState result;
   for (const Instance& instance : scene.instances) {
     if (!std::isfinite(instance.x) || !std::isfinite(instance.y) || !std::isfinite(instance.theta)) {
-      throw core::Error("scene: the pose of '" + instance.item + "' is not finite");
+      throw core::Error("scene: the pose of '" + core::excerpt(instance.item) + "' is not finite");
     }
     if (instance.present) result.state.present |= sim::InstanceMask{1} << result.instances.size();
     result.instances.push_back({vocabulary.index(instance.item), instance.x, instance.y, instance.theta});

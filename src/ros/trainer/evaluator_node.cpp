@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/ros/shared/conversions.h"
 
@@ -16,7 +17,7 @@ constexpr double kPolicyPollSec = 0.1;
 void checkVocabulary(const PolicyStatus& policy, const core::Vocabulary& vocabulary) {
   for (const std::string& item : vocabulary.names()) {
     if (std::find(policy.vocabulary.begin(), policy.vocabulary.end(), item) != policy.vocabulary.end()) continue;
-    throw core::Error("weights '" + policy.weights + "' do not know the item '" + item +
+    throw core::Error("weights '" + core::excerpt(policy.weights) + "' do not know the item '" + item +
                       "' of this world's object set; use the world that they were trained in");
   }
 }

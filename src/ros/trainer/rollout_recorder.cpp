@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/frame_stack.h"
 #include "early_fusion/ros/shared/conversions.h"
 
@@ -56,12 +57,12 @@ void RolloutRecorder::check(const sensor_msgs::Image& image, const Request& requ
   if (image.encoding != sensor_msgs::image_encodings::RGB8 || image.width != size || image.height != size ||
       image.step != 3 * size || image.data.size() != 3 * size * size) {
     throw core::Error(stepName(scene) + ": the image is " + std::to_string(image.width) + " x " +
-                      std::to_string(image.height) + " " + image.encoding + "; expected " + std::to_string(size) +
-                      " x " + std::to_string(size) + " rgb8 without padding");
+                      std::to_string(image.height) + " " + core::excerpt(image.encoding) + "; expected " +
+                      std::to_string(size) + " x " + std::to_string(size) + " rgb8 without padding");
   }
   if (action.weights != plan_.weights || action.mode != plan_.mode) {
-    throw core::Error(stepName(scene) + ": was decided by weights '" + action.weights + "' (" + action.mode +
-                      "); expected '" + plan_.weights + "' (" + plan_.mode + ")");
+    throw core::Error(stepName(scene) + ": was decided by weights '" + core::excerpt(action.weights) + "' (" +
+                      core::excerpt(action.mode) + "); expected '" + plan_.weights + "' (" + plan_.mode + ")");
   }
   const std::uint32_t frames = std::min<std::uint32_t>(scene.step + 1, core::kStackedFrames);
   if (action.frames != frames) {

@@ -3,9 +3,12 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include <cstdint>
 #include <string>
 
 namespace early_fusion::nodes {
+
+inline constexpr std::uint32_t kLongestEdge = 32767;  ///< [px] of an image, by OpenCV's filters
 
 /// The part of an image that a policy sees [px].
 struct Crop {
@@ -17,7 +20,7 @@ struct Crop {
                         ///< not
 };
 
-/// The largest square in the middle of an image.
+/// The largest square in the middle of an image. @throws core::Error if an edge is longer than kLongestEdge.
 Crop largestSquare(const sensor_msgs::Image& image);
 
 /// The part of an image about the optical axis that covers a field of view horizontally and vertically, or as much of
@@ -26,6 +29,7 @@ Crop largestSquare(const sensor_msgs::Image& image);
 /// The region of interest, the binning and the size in `info` say which pixels of the calibration the image shows.
 /// @param info null, or without a focal length that gives a view of 20 to 150 degrees: the largest square.
 /// @param rectified whether P describes the image, else K; the other one is used if that is implausible.
+/// @throws core::Error as largestSquare().
 Crop cropToView(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo* info, bool rectified,
                 double horizontal_fov_deg);
 

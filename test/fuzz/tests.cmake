@@ -1,0 +1,52 @@
+# Fuzz targets: fuzz/<name>_fuzz.cpp. With clang's libFuzzer (scripts/fuzz.sh) where the build has it; else
+# mutation_driver.cpp runs a fixed number of mutations.
+set(fuzz_corpus ${CMAKE_CURRENT_BINARY_DIR}/fuzz_corpus)
+add_executable(write_fuzz_seeds EXCLUDE_FROM_ALL fuzz/write_seeds.cpp)
+set_target_properties(write_fuzz_seeds PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+target_include_directories(write_fuzz_seeds PRIVATE ${PROJECT_SOURCE_DIR}/test)
+target_link_libraries(write_fuzz_seeds ${PROJECT_NAME}_learning gtest)
+add_custom_target(fuzz_corpus
+  COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/make_corpus.py ${PROJECT_SOURCE_DIR} ${fuzz_corpus}
+  COMMAND write_fuzz_seeds ${fuzz_corpus}
+  COMMENT "Writing the seed corpus of the fuzz targets")
+add_custom_target(fuzz_targets)
+if(NOT EARLY_FUSION_LIBFUZZER)
+  add_library(${PROJECT_NAME}_mutation_driver STATIC fuzz/mutation_driver.cpp)
+  target_link_libraries(${PROJECT_NAME}_mutation_driver ${PROJECT_NAME}_core)
+endif()
+
+# early_fusion_add_fuzz_target(name layer runs [lib...]): the program fuzz_<name>, and a test with that many runs.
+function(early_fusion_add_fuzz_target name layer runs)
+  set(target fuzz_${name})
+  add_executable(${target} EXCLUDE_FROM_ALL fuzz/${name}_fuzz.cpp)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/${layer})
+  target_include_directories(${target} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${target} ${PROJECT_NAME}_${layer} ${ARGN})
+  set(found "")  # where libFuzzer writes inputs that reach new code: by default, the seeds' folder
+  if(TARGET ${PROJECT_NAME}_mutation_driver)
+    target_link_libraries(${target} ${PROJECT_NAME}_mutation_driver)
+  else()
+    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+    set(found ${fuzz_corpus}/found/${name})
+  endif()
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+  add_dependencies(${target} fuzz_corpus)
+  add_dependencies(fuzz_targets ${target})
+  add_dependencies(tests ${target})
+  add_test(NAME ${target} COMMAND ${target} -runs=${runs} -seed=1 ${found} ${fuzz_corpus}/${name})
+endfunction()
+
+early_fusion_add_fuzz_target(camera_image ros 2000)
+early_fusion_add_fuzz_target(camera_urdf world 2000)
+early_fusion_add_fuzz_target(checkpoint learning 2000 gtest)
+early_fusion_add_fuzz_target(goal ros 2000)
+early_fusion_add_fuzz_target(kitchen_urdf world 2000)
+early_fusion_add_fuzz_target(mesh world 500)
+early_fusion_add_fuzz_target(object_set world 500)
+early_fusion_add_fuzz_target(options learning 2000)
+early_fusion_add_fuzz_target(request ros 2000)
+early_fusion_add_fuzz_target(scene ros 2000)
+early_fusion_add_fuzz_target(task sim 2000)
+early_fusion_add_fuzz_target(texture world 2000 PkgConfig::ASSIMP)
+early_fusion_add_fuzz_target(weights model 2000)
+early_fusion_add_fuzz_target(weights_message ros 2000)
