@@ -8,6 +8,9 @@ namespace early_fusion::core {
 /// The names with the separator between them: "mug, bowl, plate".
 std::string joined(const std::vector<std::string>& names, const std::string& separator = ", ");
 
+/// "mug, bowl" -> {"mug", "bowl"}. Spaces around a name and empty names are left out.
+std::vector<std::string> splitNames(const std::string& text);
+
 /// The index of `name` in `known`. @param kind what the names are names of, for the error text: "item".
 /// @throws Error "unknown item 'cup'; known are mug, bowl, plate".
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind);
