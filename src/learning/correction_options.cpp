@@ -9,7 +9,7 @@ core::OptionSet CorrectionOptions::options() {
   core::OptionSet set("corrections");
   set.add("from", from, "the weights file to start from");
   set.add("preset", preset,
-          "corrections, or a preset's YAML file; its values replace the defaults of the other options");
+          "default, or a YAML file; its values replace the defaults of the other options");
   set.add("world", world, "the world of the rehearsal, a YAML file; empty: config/world.yaml of the package");
   set.add("task", task, "the task of the rehearsal: simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "determines the rehearsal's episodes and every other random draw");
@@ -31,7 +31,7 @@ CorrectionOptions correctionPreset(const core::GivenOptions& given) {
   for (const auto& [name, value] : given) {
     if (name == "preset") options.preset = value;
   }
-  options.options().setFromYamlFile(core::findConfig("presets", options.preset));
+  options.options().setFromYamlFile(core::findConfig("corrections", options.preset));
   return options;
 }
 

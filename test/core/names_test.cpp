@@ -18,6 +18,11 @@ TEST(Names, AreJoinedInTheirOrder) {
   EXPECT_EQ(joined(keys(std::map<std::string, int>{{"b", 1}, {"a", 2}})), "a, b");
 }
 
+TEST(Names, AreSplitAtCommasWithoutSpacesAroundThem) {
+  EXPECT_EQ(splitNames(" mug,tomato soup ,, bowl"), (std::vector<std::string>{"mug", "tomato soup", "bowl"}));
+  EXPECT_TRUE(splitNames(" , ").empty());
+}
+
 TEST(Names, AnUnknownOneIsAnErrorThatListsTheKnown) {
   EXPECT_EQ(indexOf("bowl", kNames, "item"), 1);
   try {

@@ -15,7 +15,7 @@ namespace early_fusion::learning {
 /// steps, and the learning rate falls over `trajectories` rehearsal trajectories.
 struct CorrectionOptions {
   std::string from;  ///< the weights file to start from
-  std::string preset = "corrections";
+  std::string preset = "default";
   std::string world;            ///< of the rehearsal; empty: config/world.yaml of the package
   std::string task = "medium";  ///< of the rehearsal
   std::uint64_t seed = 1;
