@@ -66,7 +66,11 @@ TEST_F(CorrectionTest, AnEpisodeWithoutALabelChangesNoWeights) {
 
 /// The loss of a round without a rehearsal falls when the same episode comes again and again.
 TEST_F(CorrectionTest, LearnsWhatThePersonPressed) {
-  CorrectionTrainer trainer(small_->options("learns", {{"rehearsal_share", "0"}, {"epochs", "20"}}), small_->world);
+  CorrectionTrainer trainer(
+      small_->options(
+          "learns",
+          {{"rehearsal_share", "0"}, {"epochs", "20"}, {"learning_rate", "3e-3"}, {"final_learning_rate", "3e-3"}}),
+      small_->world);
   const std::vector<WatchedStep> steps = small_->watch(trainer, 0);
   const double first = trainer.add(steps).loss;
   double last = first;

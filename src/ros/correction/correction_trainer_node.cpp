@@ -109,16 +109,16 @@ void CorrectionTrainerNode::publishWeights() {
 void trainOnBag(learning::CorrectionSession& session, const std::string& bag,
                 const std::function<void(const std::string&)>& report) {
   CorrectionRecorder recorder = recorderFor(session);
-  const auto train = [&](const std::vector<learning::WatchedStep>& steps) {
-    const learning::CorrectionRound before = session.trainer().round();
-    report(roundText(before, session.add(steps)));
-  };
   for (const CorrectionConstPtr& message : correctionsInBag(bag)) {
+    std::optional<std::vector<learning::WatchedStep>> episode;
     try {
-      if (const auto episode = recorder.add(*message)) train(*episode);
+      episode = recorder.add(*message);
     } catch (const core::Error& error) {
       report(error.what());
     }
+    if (!episode) continue;
+    const learning::CorrectionRound before = session.trainer().round();
+    report(roundText(before, session.add(*episode)));
   }
 }
 
