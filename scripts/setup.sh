@@ -26,7 +26,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev libstb-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev)
 debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport-dev
-  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librostest-dev libtf2-ros-dev
+  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librosbag-storage-dev librostest-dev libtf2-ros-dev
   libtrajectory-msgs-dev libvisualization-msgs-dev
   python3-actionlib python3-diagnostic-msgs python3-rosbag ros-actionlib-msgs ros-core ros-diagnostic-msgs
   ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs ros-trajectory-msgs

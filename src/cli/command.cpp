@@ -8,6 +8,7 @@ void addCommands(CLI::App& app) {
   addTrain(app);
   addEvaluate(app);
   addExperiment(app);
+  addCorrect(app);
   addDifficulty(app);
   addRender(app);
   addRetention(app);

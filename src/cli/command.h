@@ -11,6 +11,7 @@ namespace early_fusion::cli {
 // One function for each subcommand. It declares the subcommand's flags and its callback.
 void addTrain(CLI::App& app);
 void addEvaluate(CLI::App& app);
+void addCorrect(CLI::App& app);
 void addDifficulty(CLI::App& app);
 void addRender(CLI::App& app);
 void addRetention(CLI::App& app);

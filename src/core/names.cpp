@@ -1,6 +1,7 @@
 #include "early_fusion/core/names.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
@@ -22,6 +23,17 @@ std::string listed(const std::vector<std::string>& names) {
     shown.push_back(excerpt(name, kMaxCharacters));
   }
   return joined(shown);
+}
+
+std::vector<std::string> splitNames(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    const std::size_t first = name.find_first_not_of(' ');
+    if (first == std::string::npos) continue;
+    names.push_back(name.substr(first, name.find_last_not_of(' ') - first + 1));
+  }
+  return names;
 }
 
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind) {

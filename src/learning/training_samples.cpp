@@ -38,13 +38,14 @@ expert::ActionSet harmfulActions(const core::Request& request, int nearest_item,
   return static_cast<expert::ActionSet>(expert::bit(Action::kCollect) | expert::bit(Action::kRemove));
 }
 
-model::Sample sampleOf(const LabelledRequest& labelled, const core::FrameStack& frames, int nearest_item,
+model::Sample sampleOf(const LabelledRequest& labelled, const core::FrameStack& frames, const TrajectoryStep& step,
                        const TrainingOptions& options, const ClassWeights& weights) {
   model::Sample sample;
   sample.observation = {frames, &labelled.request};
   sample.target = target(labelled.label, options.soft_labels);
-  sample.weight = weights[static_cast<int>(labelled.label.action)];
-  const expert::ActionSet harmful = harmfulActions(labelled.request, nearest_item, frameChanged(frames));
+  sample.weight = step.weight * weights[static_cast<int>(labelled.label.action)];
+  const expert::ActionSet harmful =
+      step.harmful ? *step.harmful : harmfulActions(labelled.request, step.nearest_item, frameChanged(frames));
   for (core::Action action : core::kAllActions) {
     if (expert::contains(harmful, action)) sample.unlikelihood[static_cast<int>(action)] = float(options.unlikelihood);
   }
@@ -85,6 +86,7 @@ void dropUntrainedRequests(Trajectory& trajectory, const TrainingOptions& option
 }
 
 bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options) {
+  if (step.labelled_requests.empty()) return false;
   return !options.skip_repeats || !step.repeats ||
          !expert::contains(step.labelled_requests.front().label.optimal, step.action);
 }
@@ -96,7 +98,7 @@ std::vector<model::Sample> samplesOf(const Trajectory& trajectory, std::size_t s
   const std::size_t requests = trainedRequests(at, options);
   std::vector<model::Sample> samples;
   for (std::size_t i = 0; i < requests; ++i) {
-    samples.push_back(sampleOf(at.labelled_requests[i], frames, at.nearest_item, options, weights));
+    samples.push_back(sampleOf(at.labelled_requests[i], frames, at, options, weights));
   }
   const bool collect_would_fail = at.nearest_item < 0 && frameChanged(frames);
   if (!options.failed_collects || !collect_would_fail) return samples;
@@ -104,7 +106,7 @@ std::vector<model::Sample> samplesOf(const Trajectory& trajectory, std::size_t s
   for (std::size_t i = 0; i < requests; ++i) {
     const LabelledRequest& labelled = at.labelled_requests[i];
     if (labelled.label.steps != kStepsOfOneMoveAndCollect) continue;
-    samples.push_back(sampleOf(labelled, after_failing, at.nearest_item, options, weights));
+    samples.push_back(sampleOf(labelled, after_failing, at, options, weights));
   }
   return samples;
 }

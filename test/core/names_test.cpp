@@ -27,6 +27,11 @@ TEST(Names, ForeignOnesAreListedByExcerpts) {
   EXPECT_EQ(many, most + ", ... (100000 names)");
 }
 
+TEST(Names, AreSplitAtCommasWithoutSpacesAroundThem) {
+  EXPECT_EQ(splitNames(" mug,tomato soup ,, bowl"), (std::vector<std::string>{"mug", "tomato soup", "bowl"}));
+  EXPECT_TRUE(splitNames(" , ").empty());
+}
+
 TEST(Names, AnUnknownOneIsAnErrorThatListsTheKnown) {
   EXPECT_EQ(indexOf("bowl", kNames, "item"), 1);
   try {

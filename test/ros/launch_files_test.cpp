@@ -10,6 +10,10 @@
 #include "child_process.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/training_session.h"
+#include "early_fusion/ros/correction/correction_node.h"
+#include "early_fusion/ros/correction/correction_trainer_node.h"
+#include "early_fusion/ros/correction/keyboard_node.h"
+#include "early_fusion/ros/correction/simulated_person_node.h"
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 #include "early_fusion/ros/robot/request_node.h"
@@ -35,11 +39,15 @@ std::vector<core::Option> optionsOf() {
 
 const std::vector<core::Option>& optionsOfNode(const std::string& type) {
   static const std::map<std::string, std::vector<core::Option>> known = {
+      {"correction_node", optionsOf<CorrectionNode>()},
+      {"correction_trainer_node", optionsOf<CorrectionTrainerNode>()},
       {"evaluator_node", optionsOf<EvaluatorNode>()},
+      {"keyboard_node", optionsOf<KeyboardNode>()},
       {"pan_tilt_driver_node", optionsOf<PanTiltDriverNode>()},
       {"policy_node", optionsOf<PolicyNode>()},
       {"request_node", optionsOf<RequestNode>()},
       {"session_monitor_node", optionsOf<SessionMonitorNode>()},
+      {"simulated_person_node", optionsOf<SimulatedPersonNode>()},
       {"simulator_node", optionsOf<SimulatorNode>()},
       {"trainer_node", optionsOf<TrainerNode>()},
       {"virtual_robot_node", optionsOf<VirtualRobotNode>()}};

@@ -68,6 +68,13 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"request_node", {"_rate:=often"}, {"rate", "often"}},
         Case{"pan_tilt_driver_node", {"_pan_joint:=neck"}, {"neck", "pan_joint"}},
         Case{"virtual_robot_node", {"_encoding:=jpeg"}, {"encoding", "jpeg", "bgr8 | rgb8"}},
+        Case{"correction_node", {"_patience:=-1"}, {"patience", "-1", "[0, 3600] s"}},
+        Case{"correction_node", {"_collect_button:=101"}, {"collect_button", "101", "[-1, 100]"}},
+        Case{"correction_trainer_node", {"_output:=/tmp/x"}, {"from", "weights file"}},
+        Case{"correction_trainer_node", {"_output:=/tmp/x", "_from:=/nowhere.safetensors"}, {"/nowhere.safetensors"}},
+        Case{"correction_trainer_node", {"_preset:=slow"}, {"slow", "default"}},
+        Case{"simulated_person_node", {"_errors:=0"}, {"errors", "0", "[1, 1000] steps"}},
+        Case{"keyboard_node", {"_terminal:=/dev/null"}, {"terminal", "/dev/null is no terminal"}},
         Case{"session_monitor_node", {"_period:=0"}, {"period", "[0.05, 60] s"}}));
 
 TEST(NodeFailure, IsNotedOnlyByTheNodesOfASession) {

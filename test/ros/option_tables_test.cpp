@@ -9,6 +9,11 @@
 #include "early_fusion/core/file.h"
 #include "early_fusion/learning/retention.h"
 #include "early_fusion/learning/session_options.h"
+#include "early_fusion/learning/simulated_correction.h"
+#include "early_fusion/ros/correction/correction_node.h"
+#include "early_fusion/ros/correction/correction_trainer_node.h"
+#include "early_fusion/ros/correction/keyboard_node.h"
+#include "early_fusion/ros/correction/simulated_person_node.h"
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 #include "early_fusion/ros/robot/request_node.h"
@@ -139,6 +144,16 @@ TEST(OptionTables, ExtendingHasEveryKeyOfATaskAndOfAWorld) {
   for (const core::Option& option : optionsOf<world::WorldOptions>()) expectRows(world, option);
 }
 
+TEST(OptionTables, AdaptingHasEveryOptionOfCorrections) {
+  const Table table = tablesIn(section(document("adapting.md"), "## Corrections by a person"));
+  const std::vector<core::Option> training = optionsOf<learning::TrainingOptions>();
+  for (const core::Option& option : optionsOf<learning::SimulatedCorrectionOptions>()) {
+    const bool of_training = std::any_of(training.begin(), training.end(),
+                                         [&](const core::Option& other) { return other.name == option.name; });
+    if (!of_training) expectRows(table, option);
+  }
+}
+
 /// @param elsewhere options that another table lists.
 template <class Node>
 void expectParameters(const std::string& heading, const std::vector<core::Option>& elsewhere = {}) {
@@ -160,6 +175,10 @@ TEST(OptionTables, RosHasEveryParameterOfEveryNode) {
   expectParameters<RequestNode>("## request_node");
   expectParameters<PanTiltDriverNode>("## pan_tilt_driver_node");
   expectParameters<VirtualRobotNode>("## virtual_robot_node");
+  expectParameters<CorrectionNode>("## correction_node");
+  expectParameters<KeyboardNode>("## keyboard_node");
+  expectParameters<SimulatedPersonNode>("## simulated_person_node");
+  expectParameters<CorrectionTrainerNode>("## correction_trainer_node", optionsOf<learning::CorrectionOptions>());
   EXPECT_TRUE(tablesIn(section(document("ros.md"), "## simulator_node")).count("diagnostic_period"));
 }
 
@@ -170,8 +189,10 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
        {optionsOf<SimulatorNode::Options>(), optionsOf<PolicyNode::Options>(), optionsOf<TrainerNode::Options>(),
         optionsOf<EvaluatorNode::Options>(), optionsOf<SessionMonitorNode::Options>(),
         optionsOf<RequestNode::Options>(), optionsOf<learning::RetentionOptions>(),
-        optionsOf<PanTiltDriverNode::Options>(), optionsOf<VirtualRobotNode::Options>(), optionsOf<sim::Task>(),
-        optionsOf<world::WorldOptions>()}) {
+        optionsOf<PanTiltDriverNode::Options>(), optionsOf<VirtualRobotNode::Options>(),
+        optionsOf<CorrectionNode::Options>(), optionsOf<KeyboardNode::Options>(),
+        optionsOf<SimulatedPersonNode::Options>(), optionsOf<CorrectionTrainerNode::Options>(),
+        optionsOf<learning::SimulatedCorrectionOptions>(), optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }
   for (const core::Option& option : all) {

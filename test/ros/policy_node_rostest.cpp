@@ -46,8 +46,8 @@ class PolicyNodeTest : public testing::Test {
 
   void SetUp() override {
     ASSERT_TRUE(spinUntil([&] {
-      return image_publisher_.getNumSubscribers() > 0 && request_publisher_.getNumSubscribers() > 0 &&
-             weights_publisher_.getNumSubscribers() > 0 && action_subscriber_.getNumPublishers() > 0 && status_;
+      return image_publisher_.getNumSubscribers() > 1 && request_publisher_.getNumSubscribers() > 1 &&
+             weights_publisher_.getNumSubscribers() > 1 && action_subscriber_.getNumPublishers() > 0 && status_;
     }));
   }
 
@@ -169,6 +169,29 @@ TEST_F(PolicyNodeTest, SaysWhichRequestedItemACollectOrRemoveIsFor) {
       EXPECT_EQ(action->item, "");
       EXPECT_EQ(action->item_probability, 0);
     }
+  }
+}
+
+TEST_F(PolicyNodeTest, NamesTheItemOfACollectAtEveryStepIfToldTo) {
+  std::vector<ActionConstPtr> always;
+  const ::ros::Subscriber subscriber =
+      node_.subscribe<Action>("always/action", 10, [&](const ActionConstPtr& m) { always.push_back(m); });
+  ASSERT_TRUE(spinUntil([&] { return subscriber.getNumPublishers() > 0; }));
+  ASSERT_TRUE(publishWeights("always", "sample"));
+  spinFor(0.3);  // until the other node has them, too
+  ActingPolicy expected;
+  expected.load(file_, "test", {"sample", 11, "f32"});
+  for (std::uint32_t step = 0; step < 8; ++step) {
+    const sensor_msgs::Image image = makeImage(kSize, kSize, 850 + step);
+    ask(image, 31, step, {"mug", "bowl"});
+    ASSERT_TRUE(spinUntil([&] { return always.size() > step; }));
+    core::Image frame(kSize, kSize);
+    frame.rgb = image.data;
+    expected.decide(frame, {"mug", "bowl"}, 31, step);
+    const bool removes = always.back()->name == "REMOVE";
+    const LikelyItem item = expected.likeliestItem(removes ? core::Action::kRemove : core::Action::kCollect);
+    EXPECT_EQ(always.back()->item, item.name);
+    EXPECT_EQ(always.back()->item_probability, item.probability);
   }
 }
 
@@ -294,6 +317,24 @@ TEST_F(PolicyNodeTest, ServicesUseNoFilesOutsideOfTheFolder) {
   save.request.path = "../home/weights.safetensors";
   ASSERT_TRUE(::ros::service::call(kSaveWeightsService, save));
   EXPECT_FALSE(save.response.success) << save.response.message;
+}
+
+TEST_F(PolicyNodeTest, PublishesWhatItSawForWhoListensAlsoWithARepeatedAnswer) {
+  ASSERT_TRUE(publishWeights("seen"));
+  std::vector<sensor_msgs::ImageConstPtr> frames;
+  const ::ros::Subscriber subscriber = node_.subscribe<sensor_msgs::Image>(
+      kFrameTopic, 10, [&](const sensor_msgs::ImageConstPtr& m) { frames.push_back(m); });
+  ASSERT_TRUE(spinUntil([&] { return subscriber.getNumPublishers() > 0; }));
+  spinFor(0.2);  // until the other side knows of the subscriber, too
+  const sensor_msgs::Image image = makeImage(64, 48, 710);
+  for (std::size_t times = 1; times <= 2; ++times) {
+    ask(image, 12, 0);
+    ASSERT_TRUE(answer());
+    ASSERT_TRUE(spinUntil([&] { return frames.size() == times; }));
+    EXPECT_EQ(frames.back()->header.stamp, image.header.stamp);
+    EXPECT_EQ(frames.back()->encoding, "rgb8");
+    EXPECT_EQ(frames.back()->data, policyImage(image, largestSquare(image), kSize).rgb);
+  }
 }
 
 TEST_F(PolicyNodeTest, DrawsAnAnnotatedImageForWhoLooks) {

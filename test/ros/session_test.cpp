@@ -1,11 +1,8 @@
 // Whole sessions through roslaunch: that they end by themselves, learn what the command line learns, bit for bit, and
 // survive the death of any node.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/socket.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
@@ -16,6 +13,7 @@
 #include "early_fusion/learning/training_session.h"
 #include "early_fusion/model/policy_file.h"
 #include "learning/small_session.h"
+#include "own_master.h"
 
 namespace early_fusion::nodes {
 namespace {
@@ -23,27 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSessionSec = 90;  // far more than a session takes: a limit for one that hangs
-
-int freePort() {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
-  socklen_t size = sizeof(address);
-  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
-  ::close(socket);
-  return ntohs(address.sin_port);
-}
-
-bool waitFor(const std::function<bool()>& condition, double timeout_sec = 30) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_sec);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return true;
-}
 
 /// A master of its own, and the same small session trained in this process to compare with.
 class SessionTest : public testing::Test {
@@ -72,24 +49,12 @@ class SessionTest : public testing::Test {
     for (const char* program : {"roscore", "roslaunch", "rosbag", "rostopic"}) {
       if (!isOnPath(program)) GTEST_SKIP() << "there is no " << program << " on the PATH";
     }
-    const std::string port = std::to_string(freePort());
-    environment_ = {{"ROS_MASTER_URI", "http://127.0.0.1:" + port},
-                    {"ROS_IP", "127.0.0.1"},
-                    {"ROS_HOME", files_->path("ros_home")},
-                    {"ROS_LOG_DIR", files_->path("ros_home/log")},
-                    {"PYTHONUNBUFFERED", "1"},
-                    {"EARLY_FUSION_SHARE", core::shareFolder()}};
-    const std::string log = files_->path("roscore" + port + ".log");
-    master_.emplace(std::vector<std::string>{"roscore", "-p", port}, environment_, log);
-    ASSERT_TRUE(waitFor([&] { return master_->output().find("started core service [/rosout]") != std::string::npos; }))
-        << master_->output();
+    master_.emplace(files_->path(""));
+    ASSERT_TRUE(master_->starts()) << master_->output();
   }
 
   std::unique_ptr<ChildProcess> launch(const std::string& file, const std::vector<std::string>& arguments) {
-    std::vector<std::string> command = {"roslaunch", "early_fusion", file};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    const std::string log = files_->path(file + std::to_string(launches_++) + ".log");
-    return std::make_unique<ChildProcess>(command, environment_, log);
+    return master_->launch(file, arguments);
   }
 
   std::unique_ptr<ChildProcess> launchTraining(const std::string& output, const std::vector<std::string>& more = {}) {
@@ -113,9 +78,7 @@ class SessionTest : public testing::Test {
   }
 
   static learning::SmallSession* files_;
-  ChildProcess::Environment environment_;
-  std::optional<ChildProcess> master_;
-  int launches_ = 0;
+  std::optional<OwnMaster> master_;
 };
 
 learning::SmallSession* SessionTest::files_ = nullptr;
@@ -312,11 +275,12 @@ TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
   const auto record = launch("record.launch", {"bag:=" + files_->path("demo.bag")});
   // rosbag subscribes, and then opens its file.
   ASSERT_TRUE(waitFor([&] { return fs::exists(files_->path("demo.bag.active")); }, kSessionSec)) << record->output();
-  ChildProcess episodes({"rostopic", "echo", "-n", "3", "episode"}, environment_, files_->path("episodes.log"));
+  ChildProcess episodes({"rostopic", "echo", "-n", "3", "episode"}, master_->environment(),
+                        files_->path("episodes.log"));
   ASSERT_TRUE(episodes.ends(kSessionSec)) << episodes.output();
   record->signal(SIGINT);
   ASSERT_TRUE(record->ends(kSessionSec)) << record->output();
-  ChildProcess info({"rosbag", "info", files_->path("demo.bag")}, environment_, files_->path("info.log"));
+  ChildProcess info({"rosbag", "info", files_->path("demo.bag")}, master_->environment(), files_->path("info.log"));
   ASSERT_TRUE(info.ends(60));
   // Topics keep their relative names, so that the bag plays in any namespace.
   for (const char* topic :
@@ -331,7 +295,7 @@ TEST_F(SessionTest, ADemoIsRecordedAndTheBagPlaysToItsEnd) {
   // roslaunch's number for a node depends on whether it started the master too.
   EXPECT_TRUE(std::regex_search(view->output(), std::regex(R"(\[play-\d+\] has died!\nprocess has finished cleanly)")))
       << view->output();
-  ChildProcess clock({"rosparam", "get", "/use_sim_time"}, environment_, files_->path("clock.log"));
+  ChildProcess clock({"rosparam", "get", "/use_sim_time"}, master_->environment(), files_->path("clock.log"));
   ASSERT_TRUE(clock.ends(60));
   EXPECT_EQ(clock.output(), "false\n") << "time would stand still for whoever comes next";
 }

@@ -3,9 +3,9 @@ find_package(rostest QUIET)
 add_library(${PROJECT_NAME}_child_process STATIC ros/child_process.cpp)
 target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
-foreach(name acting_policy camera_crop camera_image conversions files_folder joint_stepper markers option_tables
-    pan_tilt_stepper request_list request_pairing rollout_recorder sight_line standstill topic_watch virtual_camera
-    virtual_joint wall_throttle)
+foreach(name acting_policy camera_crop camera_image conversions correction_recorder files_folder joint_stepper markers
+    option_tables pan_tilt_stepper presses request_list request_pairing rollout_recorder sight_line standstill take_over
+    topic_watch virtual_camera virtual_joint wall_throttle)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()
@@ -16,6 +16,9 @@ add_dependencies(ros_launch_files_test ${PROJECT_NAME}_cli)
 
 # Whole sessions bring up masters of their own.
 early_fusion_add_test(ros session_test ${PROJECT_NAME}_child_process nlohmann_json::nlohmann_json)
+
+early_fusion_add_test(ros correct_launch_test ${PROJECT_NAME}_child_process)
+target_include_directories(ros_correct_launch_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 
 # A node with a test in the place of its partners: ros/<name>.test and ros/<name>_rostest.cpp.
 foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_node virtual_path virtual_robot)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of plot_curves.py and plot_experiment.py, and their errors. Usage: plots_test.py SOURCE"""
+"""The figures of plot_curves.py, plot_experiment.py and plot_corrections.py, and their errors. Usage: plots_test.py SOURCE"""
 import os
 import re
 import subprocess
@@ -104,6 +104,17 @@ class Plots(unittest.TestCase):
         texts = self.texts("plot_curves.py", *runs)
         for text in ("fast", "minutes", "F1 of rollouts"):
             self.assertIn(text, texts)
+
+    def test_corrections_of_runs(self):
+        scores = "episodes,presses,labels,f1,rehearsal_f1\n0,0,0,0.2,0.9\n10,80,90,0.4,0.8\n"
+        runs = [f"scans={os.path.dirname(self.write(run + '/scores.csv', scores))}" for run in ("one", "two")]
+        texts = self.texts("plot_corrections.py", *runs)
+        for text in ("presses", "F1 on held-out episodes", "the robot's world", "the rehearsal's world"):
+            self.assertIn(text, texts)
+        self.assertEqual(texts.count("scans"), 1)
+        done = self.plot("plot_corrections.py", "scans=" + os.path.join(self.folder.name, "none"))
+        self.assertIn("none", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ std::string joined(const std::vector<std::string>& names, const std::string& sep
 /// or a message.
 std::string listed(const std::vector<std::string>& names);
 
+/// "mug, bowl" -> {"mug", "bowl"}. Spaces around a name and empty names are left out.
+std::vector<std::string> splitNames(const std::string& text);
+
 /// The index of `name` in `known`. @param kind what the names are names of, for the error text: "item".
 /// @throws Error "unknown item 'cup'; known are mug, bowl, plate".
 int indexOf(const std::string& name, const std::vector<std::string>& known, const std::string& kind);

@@ -2,17 +2,16 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "early_fusion/learning/learner.h"
 #include "early_fusion/learning/training_options.h"
 #include "early_fusion/learning/training_samples.h"
 #include "early_fusion/learning/training_window.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/learning/window_checkpoint.h"
 #include "early_fusion/model/trainable_policy.h"
-#include "early_fusion/nn/adam.h"
 #include "early_fusion/nn/weights_file.h"
 
 namespace early_fusion::learning {
@@ -69,8 +68,8 @@ class Trainer {
   const TrainingOptions& options() const { return options_; }
   /// The policy that acts and is saved. With options().weight_ema, it has the moving average of the trained weights.
   /// Valid until the next trainRound() or restore().
-  model::TrainablePolicy& policy() { return ema_ ? *ema_ : *learner_; }
-  const model::TrainablePolicy& policy() const { return ema_ ? *ema_ : *learner_; }
+  model::TrainablePolicy& policy() { return learner_.policy(); }
+  const model::TrainablePolicy& policy() const { return learner_.policy(); }
   const TrainingWindow& window() const { return window_; }
 
  private:
@@ -79,17 +78,12 @@ class Trainer {
   void restartPolicy();
   std::vector<TrainingWindow::Index> drawFrames() const;
   std::vector<model::Sample> makeBatch(const std::vector<TrainingWindow::Index>& frames, const ClassWeights& weights);
-  double trainStep(const std::vector<model::Sample>& batch, double learning_rate, std::uint64_t dropout_seed);
-  void updateAverage();
   void checkFinite(const RoundStatistics& statistics) const;
   RoundStatistics rolloutStatistics() const;
-  void restorePolicy(const nn::WeightsFile& file, const std::string& source);
 
   TrainingOptions options_;
   std::uint64_t seed_;
-  std::unique_ptr<model::TrainablePolicy> learner_;
-  std::unique_ptr<model::TrainablePolicy> ema_;  // null if options_.weight_ema is 0
-  nn::Adam adam_;
+  Learner learner_;
   TrainingWindow window_;
   int new_trajectories_ = 0;
   std::uint64_t trajectories_seen_ = 0;

@@ -25,7 +25,8 @@ ClassWeights classWeights(const std::deque<Trajectory>& window, const TrainingOp
 /// Removes the labelled requests that no sample is made of, to save memory.
 void dropUntrainedRequests(Trajectory& trajectory, const TrainingOptions& options);
 
-/// False only with options.skip_repeats, for a repeat in which the policy's action was optimal.
+/// False for a step without a label and, with options.skip_repeats, for a repeat in which the policy's action was
+/// optimal.
 bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options);
 
 /// The samples of one step, for the first options.requests_per_frame of its labelled requests:
@@ -33,7 +34,7 @@ bool isTrainedOn(const TrajectoryStep& step, const TrainingOptions& options);
 /// - Target: the optimal actions share options.soft_labels equally, and the label gets the rest.
 /// - Unlikelihood: options.unlikelihood for each harmful action. These are COLLECT if the nearest object in the cone is
 ///   not requested, REMOVE if it is requested, and both if the cone is empty and the frame equals the previous frame,
-///   because then a COLLECT has just failed.
+///   because then a COLLECT has just failed. Of a step that a person labelled, TrajectoryStep::harmful has them.
 /// - With options.failed_collects, a second sample shows the same request after a failed COLLECT. It is added if the
 /// cone
 ///   is empty, the last action changed the frame, and one move and a COLLECT are missing. It has the newest frame twice

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,13 @@ struct TrajectoryStep {
   core::Action action;             ///< the action that was taken, by the policy or by the training expert
   expert::Label label;             ///< the greedy expert's
   /// The training expert's labels: for the policy's own request first, then for others; at most kMaxRequestsPerFrame.
+  /// Empty: nothing is learnt from this step.
   std::vector<LabelledRequest> labelled_requests;
   int nearest_item = -1;  ///< the item that COLLECT or REMOVE would take; -1 if the cone is empty
-  bool repeats = false;   ///< frames and request equal those of the previous step
+  /// Of a step that a person labelled: the actions that the person showed to be harmful; else nearest_item tells.
+  std::optional<expert::ActionSet> harmful;
+  float weight = 1;      ///< of its samples in the loss
+  bool repeats = false;  ///< frames and request equal those of the previous step
 };
 
 /// A labelled rollout of one episode.

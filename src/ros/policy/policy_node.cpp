@@ -36,6 +36,9 @@ core::OptionSet PolicyNode::Options::options() {
                 "image topic's name says so (image_rect)");
   set.add("name_items", name_items,
           "say which requested item a COLLECT or REMOVE is for; costs one prediction for each requested item then");
+  set.add("name_items_always", name_items_always,
+          "with name_items, at steps of other actions name the item that a COLLECT would be for, because a person may "
+          "press it");
   set.add("annotated_scale", annotated_scale, 1, 16, "", "enlargement of the annotated image");
   set.add("annotated_rate", annotated_rate_hz, 0.1, 1000, "Hz", "maximum number of annotated images a second");
   set.add("saliency_grid", saliency_grid, 0, 64, "cells",
@@ -57,6 +60,7 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
       action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
+      frame_publisher_(node_.advertise<sensor_msgs::Image>(kFrameTopic, 64)),
       status_publisher_(node_.advertise<PolicyStatus>(kPolicyStatusTopic, 2, true)) {
   if (!options_.weights.empty()) loadFile(options_.weights);
   publishStatus();
@@ -107,7 +111,10 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   }
   const bool again = answer_valid_ && answer_.header.stamp == request.header.stamp &&
                      answer_.episode == request.episode && answer_.step == request.step;
-  if (again) return publishAnswer();
+  if (again) {
+    publishFrame(image.header);
+    return publishAnswer();
+  }
   Decision decision;
   try {
     decision = decide(image, request);
@@ -124,6 +131,7 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   answer_.frames = static_cast<std::uint8_t>(decision.frames);
   nameItem(decision.action, request);
   answer_valid_ = true;
+  publishFrame(image.header);
   publishAnswer();
   latency_sec_ = (::ros::WallTime::now() - began).toSec();
   publishAnnotated(image.header, request);
@@ -151,7 +159,9 @@ Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
 void PolicyNode::nameItem(core::Action action, const Request& request) {
   const bool picks = action == core::Action::kCollect || action == core::Action::kRemove;
   LikelyItem item;
-  if (options_.name_items && picks && !request.items.empty()) item = policy_.likeliestItem(action);
+  if (options_.name_items && !request.items.empty() && (picks || options_.name_items_always)) {
+    item = policy_.likeliestItem(picks ? action : core::Action::kCollect);
+  }
   answer_.item = item.name;
   answer_.item_probability = item.probability;
 }
@@ -221,6 +231,10 @@ void PolicyNode::publishStatus() {
     status.precision = policy_.policy().options().precision;
   }
   status_publisher_.publish(status);
+}
+
+void PolicyNode::publishFrame(const std_msgs::Header& header) {
+  if (frame_publisher_.getNumSubscribers() > 0) frame_publisher_.publish(imageMessage(policy_.lastFrame(), header));
 }
 
 void PolicyNode::publishAnnotated(const std_msgs::Header& header, const Request& request) {

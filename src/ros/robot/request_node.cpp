@@ -1,10 +1,10 @@
 #include "early_fusion/ros/robot/request_node.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/excerpt.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 
@@ -14,18 +14,6 @@ namespace {
 
 constexpr double kMaxImageAgeSec = 5;  // an older image has the stamp of another clock
 constexpr double kPatienceSec = 3;     // before a warning says why no image is asked about
-
-/// "mug, bowl" -> {"mug", "bowl"}.
-std::vector<std::string> splitItems(const std::string& text) {
-  std::vector<std::string> items;
-  std::istringstream stream(text);
-  for (std::string item; std::getline(stream, item, ',');) {
-    const std::size_t first = item.find_first_not_of(' ');
-    if (first == std::string::npos) continue;
-    items.push_back(item.substr(first, item.find_last_not_of(' ') - first + 1));
-  }
-  return items;
-}
 
 /// When an image was taken. Its stamp counts only if its clock is this machine's.
 ::ros::WallTime takenAt(const std_msgs::Header& header) {
@@ -58,7 +46,7 @@ RequestNode::RequestNode(const Options& options)
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) {
         status.add("requests", itemList(list_.items()));
       }),
-      list_(splitItems(options.items), options.max_failures),
+      list_(core::splitNames(options.items), options.max_failures),
       locator_(options.position),
       motion_(options.motion, locator_),
       picker_(options.pick, locator_),

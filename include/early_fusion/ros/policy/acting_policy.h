@@ -58,6 +58,9 @@ class ActingPolicy {
   Decision decide(const core::Image& frame, const std::vector<std::string>& items, std::uint64_t episode,
                   std::uint32_t step);
 
+  /// The last frame that it decided on. Only after decide().
+  const core::Image& lastFrame() const { return frames_.back(); }
+
   /// The requested item whose own request makes `action` likeliest at the last frames: the one that the policy means.
   /// Only after decide() with a request that is not empty. Costs one prediction for each requested item.
   LikelyItem likeliestItem(core::Action action);

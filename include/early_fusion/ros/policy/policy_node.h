@@ -30,6 +30,7 @@ class PolicyNode {
     std::string image_transport = "raw";
     std::string rectified = "auto";
     bool name_items = false;
+    bool name_items_always = false;
     int annotated_scale = 4;
     double annotated_rate_hz = 10;
     int saliency_grid = 0;  ///< 0: no saliency on the annotated image
@@ -59,6 +60,7 @@ class PolicyNode {
   void load(const std::string& id, nn::WeightsFile file, const std::string& source, const Acting& acting);
   void loadFile(const std::string& path);
   void publishStatus();
+  void publishFrame(const std_msgs::Header& header);
   void publishAnnotated(const std_msgs::Header& header, const Request& request);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -79,6 +81,7 @@ class PolicyNode {
   image_transport::ImageTransport image_transport_;
   image_transport::Publisher annotated_publisher_;
   ::ros::Publisher action_publisher_;
+  ::ros::Publisher frame_publisher_;
   ::ros::Publisher status_publisher_;
   ::ros::Subscriber camera_info_subscriber_;
   ::ros::Subscriber weights_subscriber_;

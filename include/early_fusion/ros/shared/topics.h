@@ -25,6 +25,14 @@ inline constexpr char kAnnotatedImageTopic[] = "camera/image_annotated";
 inline constexpr char kLoadWeightsService[] = "load_weights";
 inline constexpr char kSaveWeightsService[] = "save_weights";
 
+// Of a person who corrects the policy. The policy then publishes its action as kPolicyActionTopic, by a remapping.
+inline constexpr char kFrameTopic[] = "camera/frame";  ///< what the policy saw
+inline constexpr char kPolicyActionTopic[] = "policy_action";
+inline constexpr char kProposalTopic[] = "proposal";
+inline constexpr char kPressTopic[] = "press";
+inline constexpr char kJoyTopic[] = "joy";
+inline constexpr char kCorrectionTopic[] = "correction";
+
 // Of a robot. "command" topics are those of ros_control's controllers.
 inline constexpr char kPanCommandTopic[] = "pan_position_controller/command";
 inline constexpr char kTiltCommandTopic[] = "tilt_position_controller/command";

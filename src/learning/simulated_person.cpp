@@ -1,0 +1,21 @@
+#include "early_fusion/learning/simulated_person.h"
+
+namespace early_fusion::learning {
+
+core::OptionSet SimulatedPerson::Options::options() {
+  core::OptionSet set("simulated person");
+  set.add("errors", errors, 1, 1000, "steps",
+          "the simulated person presses only where the policy has erred for this many steps running");
+  set.addChoice("person_expert", expert, trainingExpertNames(),
+                "the expert whose actions the simulated person presses");
+  return set;
+}
+
+std::optional<core::Action> SimulatedPerson::answer(int step, const expert::Label& label, core::Action policys) {
+  if (step == 0) erred_ = 0;
+  erred_ = expert::contains(label.optimal, policys) ? 0 : erred_ + 1;
+  if (erred_ < options_.errors) return std::nullopt;
+  return label.action;
+}
+
+}  // namespace early_fusion::learning

@@ -1,0 +1,10 @@
+#include "early_fusion/ros/correction/keyboard_node.h"
+
+#include <ros/init.h>
+
+#include "early_fusion/ros/shared/run_node.h"
+
+int main(int argc, char** argv) {
+  namespace nodes = early_fusion::nodes;
+  return nodes::runNode<nodes::KeyboardNode>(argc, argv, "keyboard", [] { ros::spin(); });
+}
