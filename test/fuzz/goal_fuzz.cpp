@@ -5,9 +5,15 @@
 
 using namespace early_fusion;
 
+namespace {
+
+// Loaded before the first run, which would take too long otherwise.
+const learning::SmallSession files;
+const std::shared_ptr<const world::World> loaded = world::loadWorld(files.world());
+
+}  // namespace
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const learning::SmallSession files;
-  static const auto world = world::loadWorld(files.world());
   fuzz::Reader input(data, size);
   RunEpisodesGoal goal;
   goal.task = input.text();
@@ -24,10 +30,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const sim::EpisodeKey key = nodes::firstEpisode(goal);
     nodes::expertDrive(goal).drives(key.seed, key.number, 0);
     nodes::trainingExpert(goal);
-    const sim::Episode episode(*world, key);
+    const sim::Episode episode(*loaded, key);
     fuzz::require(static_cast<int>(episode.setup().instances.size()) <= sim::kMaxInstances, "the number of objects");
-    const Scene scene = nodes::sceneMessage(episode, key, world->objects.vocabulary(), "", {});
-    nodes::sceneState(scene, world->objects.vocabulary(), world->rig.lattice());
+    const Scene scene = nodes::sceneMessage(episode, key, loaded->objects.vocabulary(), "", {});
+    nodes::sceneState(scene, loaded->objects.vocabulary(), loaded->rig.lattice());
   });
   return 0;
 }

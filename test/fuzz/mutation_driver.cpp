@@ -37,7 +37,7 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  for (const std::string word : std::vector<std::string>(argv + 1, argv + argc)) {
+  for (const std::string& word : std::vector<std::string>(argv + 1, argv + argc)) {
     if (word.compare(0, 6, "-runs=") == 0) {
       arguments.runs = std::stoi(word.substr(6));
     } else if (word.compare(0, 6, "-seed=") == 0) {

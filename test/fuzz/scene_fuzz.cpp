@@ -61,15 +61,17 @@ Action readAction(fuzz::Reader& input) {
   return action;
 }
 
+// Made before the first run, which would take too long otherwise.
+const learning::SmallSession files;
+const std::shared_ptr<const world::World> loaded = world::loadWorld(files.world());
+const nodes::RolloutPlan plan = makePlan();
+const Scene begin = firstScene(*loaded, plan, 0);
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const learning::SmallSession files;
-  static const auto world = world::loadWorld(files.world());
-  static const nodes::RolloutPlan plan = makePlan();
-  static const Scene begin = firstScene(*world, plan, 0);
   fuzz::Reader input(data, size);
-  nodes::RolloutRecorder recorder(*world, plan);
+  nodes::RolloutRecorder recorder(*loaded, plan);
   sensor_msgs::Image image;
   image.encoding = "rgb8";
   image.width = image.height = learning::SmallSession::kImageSize;
@@ -84,7 +86,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Request request;
     request.items = scene.request;
     const Action action = readAction(input);
-    fuzz::allowError([&] { nodes::sceneState(scene, world->objects.vocabulary(), world->rig.lattice()); });
+    fuzz::allowError([&] { nodes::sceneState(scene, loaded->objects.vocabulary(), loaded->rig.lattice()); });
     fuzz::allowError([&] { recorder.add(image, request, scene, action); });
     while (const auto trajectory = recorder.next()) {
       fuzz::require(trajectory->steps.size() == kSteps, "a trajectory with another number of steps");
