@@ -8,8 +8,7 @@ namespace early_fusion::learning {
 core::OptionSet CorrectionOptions::options() {
   core::OptionSet set("corrections");
   set.add("from", from, "the weights file to start from");
-  set.add("preset", preset,
-          "default, or a YAML file; its values replace the defaults of the other options");
+  set.add("preset", preset, "default, or a YAML file; its values replace the defaults of the other options");
   set.add("world", world, "the world of the rehearsal, a YAML file; empty: config/world.yaml of the package");
   set.add("task", task, "the task of the rehearsal: simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "determines the rehearsal's episodes and every other random draw");
