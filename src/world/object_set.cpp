@@ -19,8 +19,9 @@ namespace early_fusion::world {
 
 namespace {
 
-constexpr double kMinSize = 0.005;  // [m]
-constexpr double kMaxSize = 2.0;    // [m]
+constexpr double kMinSize = 0.005;      // [m]
+constexpr double kMinThickness = 1e-4;  // [m]
+constexpr double kMaxSize = 2.0;        // [m]
 
 /// "FILE:LINE: "
 std::string place(const std::string& file, const YAML::Node& node) {
@@ -101,6 +102,9 @@ Eigen::Vector3d normalise(TexturedMesh& mesh) {
 
 void checkSize(const TexturedMesh& mesh, const std::string& where) {
   const Eigen::Vector3f size = mesh.bounds().sizes();
+  if (size.minCoeff() < kMinThickness) {
+    throw core::Error(where + "the mesh is flat: it is thinner than 0.1 mm; give it a thickness");
+  }
   if (size.maxCoeff() >= kMinSize && size.maxCoeff() <= kMaxSize) return;
   std::ostringstream text;
   text << size.x() << " x " << size.y() << " x " << size.z();

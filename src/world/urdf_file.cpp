@@ -72,9 +72,22 @@ void checkTree(const urdf::ModelInterface& model, const std::string& path) {
   }
 }
 
+std::string withoutComments(const std::string& xml) {
+  std::string content;
+  std::size_t at = 0;
+  for (std::size_t begin; (begin = xml.find("<!--", at)) != std::string::npos;) {
+    content.append(xml, at, begin - at);
+    const std::size_t end = xml.find("-->", begin);
+    if (end == std::string::npos) return content;
+    at = end + 3;
+  }
+  return content.append(xml, at, std::string::npos);
+}
+
 /// @param reason set to what the parser complained of.
 urdf::ModelInterfaceSharedPtr parse(const std::string& xml, const std::string& path, std::string& reason) {
-  if (xml.find("<xacro:") != std::string::npos) {
+  const std::string content = withoutComments(xml);
+  if (content.find("<xacro:") != std::string::npos || content.find("=\"${") != std::string::npos) {
     throw core::Error(path + ": is a xacro file, not a URDF; run xacro first (xacro robot.urdf.xacro > robot.urdf)");
   }
   checkDepth(xml, path);

@@ -40,7 +40,7 @@ inline bool waitFor(const std::function<bool()>& condition, double timeout_sec =
 /// A master on a port of its own, and launch files that use it.
 class OwnMaster {
  public:
-  /// @param folder for logs and ROS_HOME.
+  /// @param folder for logs and ROS_HOME, with a slash at its end.
   explicit OwnMaster(const std::string& folder) : OwnMaster(folder, std::to_string(freePort())) {}
 
   /// Whether it has started.
@@ -53,7 +53,7 @@ class OwnMaster {
   std::unique_ptr<ChildProcess> launch(const std::string& file, const std::vector<std::string>& arguments) {
     std::vector<std::string> command = {"roslaunch", "early_fusion", file};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    const std::string log = folder_ + "/" + file + std::to_string(launches_++) + ".log";
+    const std::string log = folder_ + file + std::to_string(launches_++) + ".log";
     return std::make_unique<ChildProcess>(command, environment_, log);
   }
 
@@ -62,11 +62,11 @@ class OwnMaster {
       : folder_(folder),
         environment_({{"ROS_MASTER_URI", "http://127.0.0.1:" + port},
                       {"ROS_IP", "127.0.0.1"},
-                      {"ROS_HOME", folder + "/ros_home"},
-                      {"ROS_LOG_DIR", folder + "/ros_home/log"},
+                      {"ROS_HOME", folder + "ros_home"},
+                      {"ROS_LOG_DIR", folder + "ros_home/log"},
                       {"PYTHONUNBUFFERED", "1"},
                       {"EARLY_FUSION_SHARE", core::shareFolder()}}),
-        roscore_({"roscore", "-p", port}, environment_, folder + "/roscore" + port + ".log") {}
+        roscore_({"roscore", "-p", port}, environment_, folder + "roscore" + port + ".log") {}
 
   std::string folder_;
   ChildProcess::Environment environment_;

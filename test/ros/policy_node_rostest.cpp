@@ -271,6 +271,19 @@ TEST_F(PolicyNodeTest, AnswersImagesWhoseStampsAreAllZero) {
   }
 }
 
+TEST_F(PolicyNodeTest, DecidesAnewForAnotherRequestWithTheSameStamp) {
+  ASSERT_TRUE(publishWeights("another"));
+  sensor_msgs::Image image = makeImage(kSize, kSize, 1);
+  image.header.stamp = ::ros::Time();
+  ask(image, 4, 0, {"mug"});
+  const ActionConstPtr mug = answer();
+  ASSERT_TRUE(mug);
+  ask(image, 4, 0, {"bowl"});
+  const ActionConstPtr bowl = answer();
+  ASSERT_TRUE(bowl);
+  EXPECT_NE(bowl->probabilities, mug->probabilities);
+}
+
 TEST_F(PolicyNodeTest, BrokenWeightsLeaveTheOldOnesActing) {
   ASSERT_TRUE(publishWeights("good"));
   Weights broken;

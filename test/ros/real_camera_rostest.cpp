@@ -51,6 +51,7 @@ TEST_F(RealCameraTest, TheServiceChangesWhatIsAskedForAndBeginsAnEpisode) {
   ASSERT_TRUE(first);
   act("IDLE", first->header);
   spinFor(0.1);
+  EXPECT_FALSE(request({"banana", ""})) << "an item without a name";
   ASSERT_TRUE(request({"apple"}));
   const RequestConstPtr second = nextRequest();
   ASSERT_TRUE(second);

@@ -72,6 +72,9 @@ TEST(CentreDepth, SaysWhatIsWrongWithAnImage) {
   truncated.data.resize(20);
   expectError([&] { centreDepth(truncated); }, "too few bytes");
   expectError([] { centreDepth(sensor_msgs::Image()); }, "encoding ''");
+  sensor_msgs::Image far = depthImage("32FC1", sizeof(float));
+  set(far, 3, 4, 1e30f);
+  expectError([&] { centreDepth(far); }, "check its unit");
 }
 
 }  // namespace

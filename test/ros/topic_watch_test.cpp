@@ -25,6 +25,10 @@ TEST(TopicWatch, SaysIfNoTopicHasTheType) {
 TEST(TopicWatch, TellsASilentPublisherFromAMissingOne) {
   expectWords(silenceOf(kImages, {{"/camera/image_raw", "sensor_msgs/Image", {"/driver"}}}),
               {"/driver", "sends nothing", "ROS_IP"});
+  NeededTopic requests = kImages;
+  requests.if_silent = "it waits for a request";
+  expectWords(silenceOf(requests, {{"/camera/image_raw", "sensor_msgs/Image", {"/request"}}}),
+              {"/request", "sends nothing, or it waits for a request"});
 }
 
 TEST(TopicWatch, NamesATopicOfAnotherType) {

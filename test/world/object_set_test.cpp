@@ -114,5 +114,14 @@ TEST(ObjectSet, RefusesAMeshInAnotherUnit) {
               {"objects.yaml:2", "object 'cube'", "57 x 57 x 57 m", "check the scale"});
 }
 
+TEST(ObjectSet, RefusesAFlatMesh) {
+  const TestFolder folder;
+  folder.write("flat.obj", "v 0 0 0\nv 0.06 0 0\nv 0.06 0.06 0\nv 0 0.06 0\nf 1 2 3 4\n");
+  const std::string yaml = folder.write("objects.yaml", "objects: [{name: card, mesh: flat.obj}]\n");
+  const std::string error = errorOf([&] { ObjectSet::load(yaml, 2000); });
+  EXPECT_NE(error.find("object 'card'"), std::string::npos) << error;
+  EXPECT_NE(error.find("the mesh is flat"), std::string::npos) << error;
+}
+
 }  // namespace
 }  // namespace early_fusion::world

@@ -113,6 +113,11 @@ TEST(PanTiltUnit, AXacroFileSaysThatXacroHasToRunFirst) {
   EXPECT_NE(error.find("the unit: is a xacro file, not a URDF; run xacro first"), std::string::npos) << error;
   EXPECT_EQ(parse("<robot name=\"rig\">", R"(<robot name="rig" xmlns:xacro="http://ros.org/wiki/xacro">)").pan.sign, 1)
       << "the output of xacro may still name its namespace";
+  EXPECT_EQ(parse("<robot name=\"rig\">", R"(<robot name="rig"><!-- <xacro:include filename="a"/> -->)").pan.sign, 1)
+      << "comments do not count";
+  const std::string number =
+      errorOf([] { parse(kPanLimit, R"(<limit lower="${-pi/2}" upper="0.698132" effort="1" velocity="1"/>)"); });
+  EXPECT_NE(number.find("run xacro first"), std::string::npos) << number;
 }
 
 }  // namespace

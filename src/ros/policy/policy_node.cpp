@@ -85,8 +85,11 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
 void PolicyNode::expectTopics() {
   watch_.expect(neededImage(image_subscriber_.getTopic(), options_.image_transport,
                             "remap camera/image_raw to the camera's (real_camera.launch: image)"));
-  watch_.expect({"request", request_subscriber_.getTopic(), "early_fusion/Request",
-                 "start request_node in this namespace, or the simulator"});
+  NeededTopic requests{"request", request_subscriber_.getTopic(), "early_fusion/Request",
+                       "start request_node in this namespace, or the simulator"};
+  requests.if_silent =
+      "it waits: for a request (rosservice call set_request), or for what its own log names, such as joint states";
+  watch_.expect(requests);
 }
 
 void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image) {
@@ -110,7 +113,8 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
                         "no weights yet; set ~weights, call 'load_weights', or publish them on 'weights'");
   }
   const bool again = answer_valid_ && answer_.header.stamp == request.header.stamp &&
-                     answer_.episode == request.episode && answer_.step == request.step;
+                     answer_.episode == request.episode && answer_.step == request.step &&
+                     answered_items_ == request.items;
   if (again) {
     publishFrame(image.header);
     return publishAnswer();
@@ -129,6 +133,7 @@ void PolicyNode::answer(const sensor_msgs::Image& image, const Request& request)
   answer_.weights = weights_id_;
   answer_.mode = policy_.acting().mode;
   answer_.frames = static_cast<std::uint8_t>(decision.frames);
+  answered_items_ = request.items;
   nameItem(decision.action, request);
   answer_valid_ = true;
   publishFrame(image.header);

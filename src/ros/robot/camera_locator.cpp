@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "early_fusion/core/error.h"
 #include "early_fusion/ros/robot/sight_line.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
@@ -24,7 +25,7 @@ Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform) {
 core::OptionSet CameraLocator::Options::options() {
   core::OptionSet set("position");
   set.add("target_frame", target_frame,
-          "the robot's frame in which positions are given, with z up; empty: give no positions");
+          "the robot's frame in which positions are given, with z up; none: give no positions");
   set.add("optical_frame", optical_frame,
           "the camera's frame in tf (z forward, x right, y down); empty: the frame_id of its images");
   set.add("surface_height", surface_height_m, -100, 100, "m",
@@ -34,6 +35,9 @@ core::OptionSet CameraLocator::Options::options() {
 }
 
 CameraLocator::CameraLocator(const Options& options) : options_(options), listener_(buffer_) {
+  if (options_.target_frame.empty()) {
+    throw core::Error("~target_frame is empty; it must be a frame of tf, or none for no positions");
+  }
   if (!options_.use_depth) return;
   depth_subscriber_ = node_.subscribe<sensor_msgs::Image>(
       kDepthImageTopic, 1, [this](const sensor_msgs::ImageConstPtr& image) { depth_ = image; });
@@ -61,7 +65,7 @@ std::string CameraLocator::obstacle(const std::string& image_frame) const {
   if (frame.empty()) return "the images have no frame_id; set ~optical_frame";
   if (buffer_.canTransform(options_.target_frame, frame, ::ros::Time(0), &reason)) return "";
   return "there is no transform from ~target_frame '" + options_.target_frame + "' to the camera's frame '" + frame +
-         "' (" + reason + "); run robot_state_publisher, set the right frames, or target_frame:=\"\" for no positions";
+         "' (" + reason + "); run robot_state_publisher, set the right frames, or target_frame:=none for no positions";
 }
 
 std::optional<geometry_msgs::PoseStamped> CameraLocator::locate(const std_msgs::Header& image,

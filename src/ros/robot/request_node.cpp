@@ -69,8 +69,10 @@ void RequestNode::noteStamp(const ::ros::Time& stamp) {
     ROS_INFO("the images' time has jumped back by %.3f s: a new episode begins", (latest_image_ - stamp).toSec());
     step_ = 0;
     waiting_ = false;
+    locator_.forget();
   }
-  if (stamp == latest_image_) {
+  stamps_stand_still_ = stamp == latest_image_;
+  if (stamps_stand_still_) {
     ROS_WARN_ONCE(
         "the stamps of the images stand still at %.3f, so the policy cannot tell an image from the one before it; let "
         "the camera's driver stamp the images",
@@ -132,6 +134,7 @@ void RequestNode::onAction(const Action& action) {
 void RequestNode::pick(const Action& action) {
   Found found;
   found.header = asked_.header;
+  if (stamps_stand_still_) found.header.stamp = ::ros::Time();  // the newest transform
   found.action = action.name;
   found.item = action.item;
   found.item_probability = action.item_probability;
@@ -165,6 +168,11 @@ void RequestNode::reportFailure(const Found& found, const std::string& message) 
 }
 
 bool RequestNode::onSetRequest(SetRequest::Request& request, SetRequest::Response& response) {
+  if (std::find(request.items.begin(), request.items.end(), "") != request.items.end()) {
+    response.success = false;
+    response.message = "an item has no name; the request stays " + itemList(list_.items());
+    return true;
+  }
   picker_.cancel();
   list_ = RequestList(request.items, options_.max_failures);
   step_ = 0;

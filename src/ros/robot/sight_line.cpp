@@ -62,7 +62,8 @@ double centreDepth(const sensor_msgs::Image& depth) {
   if (depths.empty()) throw core::Error("the depth image knows no depth at its centre");
   const auto middle = depths.begin() + depths.size() / 2;
   std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  if (*middle < kMaxDistanceM) return *middle;
+  throw core::Error("the depth image says " + std::to_string(*middle) + " m at its centre; check its unit");
 }
 
 Eigen::Isometry3d pointInView(const Eigen::Isometry3d& frame_from_camera, double distance_m) {

@@ -2,12 +2,14 @@
 
 #include <ros/console.h>
 #include <ros/master.h>
+#include <ros/names.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
 
 #include "early_fusion/core/names.h"
+#include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
 
@@ -45,6 +47,9 @@ std::vector<PublishedTopic> publishedByOthers() {
     const auto found = publishers.find(topic.name);
     if (found == publishers.end()) continue;
     if (found->second == std::vector<std::string>{::ros::this_node::getName()}) continue;
+    const bool shows_policy =
+        topic.name == ::ros::names::resolve(kAnnotatedImageTopic) || topic.name == ::ros::names::resolve(kFrameTopic);
+    if (shows_policy) continue;  // no camera's images
     published.push_back({topic.name, topic.datatype, found->second});
   }
   return published;
@@ -55,8 +60,7 @@ std::string silenceOf(const NeededTopic& topic, const std::vector<PublishedTopic
   for (const PublishedTopic& candidate : published) {
     const bool has_type = topic.type.empty() || candidate.type == topic.type;
     if (candidate.name == topic.name && has_type) {
-      return described(candidate) + " has a publisher that sends nothing, or the network loses it; check the driver, " +
-             "ROS_IP and ROS_HOSTNAME";
+      return described(candidate) + " has a publisher that sends nothing, or " + topic.if_silent;
     }
     if (candidate.name == topic.name) {
       return described(candidate) + " has type " + candidate.type + ", not " + topic.type + "; " + topic.advice;

@@ -9,6 +9,7 @@
 #include <ros/node_handle.h>
 
 #include <string>
+#include <vector>
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/policy/acting_policy.h"
@@ -71,7 +72,8 @@ class PolicyNode {
   ActingPolicy policy_;
   RequestPairing pairing_;
   std::string weights_id_;
-  Action answer_;              // to the previous image
+  Action answer_;  // to the previous image
+  std::vector<std::string> answered_items_;
   bool answer_valid_ = false;  // whether answer_ was decided by the current weights
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::string crop_warning_;  // of the last image

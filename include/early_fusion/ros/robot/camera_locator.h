@@ -18,7 +18,7 @@ namespace early_fusion::nodes {
 class CameraLocator {
  public:
   struct Options {
-    std::string target_frame = "base_link";  ///< empty: no positions
+    std::string target_frame = "base_link";  ///< none: no positions
     std::string optical_frame;               ///< empty: the image's frame_id
     double surface_height_m = 0.9;
     bool use_depth = false;
@@ -26,9 +26,13 @@ class CameraLocator {
     core::OptionSet options();
   };
 
+  /// @throws core::Error if the target frame is empty.
   explicit CameraLocator(const Options& options);
 
-  bool wanted() const { return !options_.target_frame.empty(); }
+  /// Forgets the transforms that are known. To be called when the time jumps back: tf2 would refuse those that come.
+  void forget() { buffer_.clear(); }
+
+  bool wanted() const { return options_.target_frame != "none"; }
 
   /// The optical frame of an image with this header.
   std::string opticalFrame(const std::string& image_frame) const;

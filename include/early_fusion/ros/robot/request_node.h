@@ -62,7 +62,8 @@ class RequestNode {
   Picker picker_;
   std::uint32_t step_ = 0;
   ::ros::Time latest_image_;
-  bool waiting_ = false;  // for the action that answers asked_
+  bool stamps_stand_still_ = false;  // those of the last two images are equal
+  bool waiting_ = false;             // for the action that answers asked_
   Request asked_;
   ::ros::WallTime asked_at_;
   ::ros::WallTime answered_at_;  // when the last action came, or was finished

@@ -17,15 +17,18 @@ struct PublishedTopic {
   std::vector<std::string> publishers;  ///< nodes
 };
 
-/// What somebody publishes now, but not this node; empty if the master does not answer.
+/// What somebody publishes now, but not this node, and not what shows a policy at work; empty if the master does not
+/// answer.
 std::vector<PublishedTopic> publishedByOthers();
 
 /// A topic without which a node cannot do its work.
 struct NeededTopic {
-  std::string what;         ///< for the user: "image"
-  std::string name;         ///< resolved: "/camera/image_raw"
-  std::string type;         ///< "sensor_msgs/Image"; empty: not known
-  std::string advice;       ///< what to do if another topic is the right one: "set the argument image"
+  std::string what;    ///< for the user: "image"
+  std::string name;    ///< resolved: "/camera/image_raw"
+  std::string type;    ///< "sensor_msgs/Image"; empty: not known
+  std::string advice;  ///< what to do if another topic is the right one: "set the argument image"
+  std::string if_silent = "the network loses it; check the driver, ROS_IP and ROS_HOSTNAME";
+  ///< why somebody who publishes it may send nothing
   bool must_go_on = false;  ///< whether to warn also if messages stop coming
 };
 
