@@ -71,7 +71,7 @@ class RealCameraTest : public testing::Test {
     for (const char* frame : {"camera_optical_frame", "moving_optical_frame"}) {
       // A camera at (0.1, 0.2, 1.4) that looks along x, 30 degrees downwards.
       geometry_msgs::TransformStamped transform;
-      transform.header.stamp = ::ros::Time::now();
+      transform.header.stamp = ::ros::Time::now() - ago_;
       transform.header.frame_id = "base_link";
       transform.child_frame_id = frame;
       transform.transform.translation.x = 0.1;
@@ -87,7 +87,7 @@ class RealCameraTest : public testing::Test {
     }
     sensor_msgs::Image image;
     image.header.frame_id = image_frame_;
-    image.header.stamp = ::ros::Time::now();
+    image.header.stamp = ::ros::Time::now() - ago_;
     image_publisher_.publish(image);
   }
 
@@ -150,6 +150,7 @@ class RealCameraTest : public testing::Test {
   FoundConstPtr found_;
   std::string image_frame_ = "camera_optical_frame", log_;
   double tilt_ = 0.3;
+  ::ros::Duration ago_;  // how much earlier the stamps of images and transforms are
 };
 
 }  // namespace early_fusion::nodes
