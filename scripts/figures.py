@@ -1,4 +1,5 @@
 """What the scripts that draw curves share."""
+import csv
 import os
 import sys
 
@@ -9,6 +10,23 @@ except ImportError:
 matplotlib.use("Agg")
 matplotlib.rcParams["svg.hashsalt"] = "early_fusion"  # the same bytes every time
 from matplotlib import pyplot  # noqa: E402, F401
+
+
+def read_run(argument, table, nothing):
+    """NAME=FOLDER -> (NAME, columns of the folder's CSV file `table`). `nothing`: the error for a table without rows."""
+    program = os.path.basename(sys.argv[0])
+    name, equals, folder = argument.partition("=")
+    path = os.path.join(folder, table)
+    if not equals:
+        sys.exit(f"{program}: '{argument}' is not NAME=FOLDER")
+    try:
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+    except OSError as error:
+        sys.exit(f"{program}: {path}: {error.strerror}")
+    if not rows:
+        sys.exit(f"{program}: {path}: {nothing}")
+    return name, {key: [float(row[key]) for row in rows] for key in rows[0]}
 
 
 def draw_mean(axes, x, points, **style):

@@ -1,32 +1,13 @@
 #!/usr/bin/python3
 """Draws F1 against the number of presses of the person, for runs of `early_fusion correct`.
 
-Runs with the same name are drawn in one colour: a thin line each, and a dot at each score. The left axes are the robot's
+Runs with the same name have one colour. Each run is a thin line with a dot at each score. The left axes are the robot's
 world, the right ones the rehearsal's.
 Example: scripts/plot_corrections.py --out corrections.svg scans=runs/ycb1 scans=runs/ycb2
 """
 import argparse
-import csv
-import os
-import sys
 
-from figures import pyplot, save
-
-
-def read_run(argument):
-    """NAME=FOLDER -> (NAME, columns of its scores.csv)."""
-    name, equals, folder = argument.partition("=")
-    path = os.path.join(folder, "scores.csv")
-    if not equals:
-        sys.exit(f"plot_corrections.py: '{argument}' is not NAME=FOLDER")
-    try:
-        with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
-    except OSError as error:
-        sys.exit(f"plot_corrections.py: {path}: {error.strerror}")
-    if not rows:
-        sys.exit(f"plot_corrections.py: {path}: no scores yet")
-    return name, {key: [float(row[key]) for row in rows] for key in rows[0]}
+from figures import pyplot, read_run, save
 
 
 def main():
@@ -36,7 +17,8 @@ def main():
     options = parser.parse_args()
     figure, columns = pyplot.subplots(1, 2, figsize=(10, 3.8), sharey=True, layout="constrained")
     colors = {}
-    for name, run in map(read_run, options.runs):
+    for argument in options.runs:
+        name, run = read_run(argument, "scores.csv", "no scores yet")
         for axes, column in zip(columns, ["f1", "rehearsal_f1"]):
             style = {"marker": "o", "markersize": 3, "linewidth": 1.1}
             label = None if name in colors else name

@@ -5,27 +5,8 @@ Runs with the same name are drawn as one line, their mean, with a band from thei
 Example: scripts/plot_curves.py --out curves.svg fast=runs/fast1 fast=runs/fast2 paper=runs/paper
 """
 import argparse
-import csv
-import os
-import sys
 
-from figures import draw_mean, pyplot, save
-
-
-def read_run(argument):
-    """NAME=FOLDER -> (NAME, columns of its curve.csv)."""
-    name, equals, folder = argument.partition("=")
-    path = os.path.join(folder, "curve.csv")
-    if not equals:
-        sys.exit(f"plot_curves.py: '{argument}' is not NAME=FOLDER")
-    try:
-        with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
-    except OSError as error:
-        sys.exit(f"plot_curves.py: {path}: {error.strerror}")
-    if not rows:
-        sys.exit(f"plot_curves.py: {path}: no rounds yet")
-    return name, {key: [float(row[key]) for row in rows] for key in rows[0]}
+from figures import draw_mean, pyplot, read_run, save
 
 
 def smoothed(values, width):
@@ -48,7 +29,7 @@ def main():
     options = parser.parse_args()
     groups = {}
     for argument in options.runs:
-        name, columns = read_run(argument)
+        name, columns = read_run(argument, "curve.csv", "no rounds yet")
         groups.setdefault(name, []).append(columns)
 
     figure, rows = pyplot.subplots(2, 2, figsize=(10, 6.5), sharey="row", layout="constrained")

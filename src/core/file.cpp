@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
@@ -102,6 +103,13 @@ void removeTemporaryFiles(const std::string& path) {
 std::string resolvePath(const std::string& base_file, const std::string& path) {
   if (fs::path(path).is_absolute()) return path;
   return (fs::path(base_file).parent_path() / path).lexically_normal().string();
+}
+
+std::string lowerCaseExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
 }
 
 std::string shareFolder() {

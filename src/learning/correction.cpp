@@ -24,8 +24,6 @@ std::optional<Action> reverseOf(Action action) {
   }
 }
 
-bool picks(Action action) { return action == Action::kCollect || action == Action::kRemove; }
-
 /// Whether the press at `at` takes back the policy's move of step `move`.
 bool undoes(const std::vector<WatchedStep>& steps, std::size_t at, std::size_t move) {
   const WatchedStep &before = steps[move], &after = steps[move + 1];
@@ -47,7 +45,7 @@ void labelUndone(const std::vector<WatchedStep>& steps, std::size_t first, std::
 expert::ActionSet harmfulIn(const WatchedStep& step, Action label) {
   if (label == Action::kCollect) return expert::bit(Action::kRemove);
   if (label == Action::kRemove) return expert::bit(Action::kCollect);
-  return step.persons && picks(step.policys) ? expert::bit(step.policys) : expert::ActionSet{0};
+  return step.persons && core::picks(step.policys) ? expert::bit(step.policys) : expert::ActionSet{0};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ Episode::Episode(const world::World& world, const Task& task, EpisodeSetup setup
 
 void Episode::step(core::Action action) {
   assert(!finished());
-  if (action == core::Action::kCollect || action == core::Action::kRemove) {
+  if (core::picks(action)) {
     const int instance = cone_->nearest(state_.orientation, state_.present);
     if (instance >= 0) take(instance, action == core::Action::kCollect);
   }

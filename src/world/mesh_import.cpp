@@ -218,10 +218,7 @@ bool hasEndOfHeader(const std::string& ply) {
 
 /// Assimp's importer never ends for a PLY file without the end of its header.
 void checkPly(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".ply" || hasEndOfHeader(core::readFile(path, kMaxMeshBytes))) return;
+  if (core::lowerCaseExtension(path) != ".ply" || hasEndOfHeader(core::readFile(path, kMaxMeshBytes))) return;
   throw core::Error(path + ": cannot be read as a mesh: its header has no end_header");
 }
 

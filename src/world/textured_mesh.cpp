@@ -7,7 +7,6 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -35,9 +34,7 @@ struct Conversion {
 };
 
 bool isGltf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = core::lowerCaseExtension(path);
   return extension == ".glb" || extension == ".gltf";
 }
 

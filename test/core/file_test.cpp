@@ -125,5 +125,10 @@ TEST_F(FileTest, ConfigNamesAreFoundAndPathsAreTakenAsTheyAre) {
   ::unsetenv("EARLY_FUSION_SHARE");
 }
 
+TEST(FileNames, HaveTheirExtensionInLowerCase) {
+  EXPECT_EQ(lowerCaseExtension("meshes/Mug.v2.OBJ"), ".obj");
+  EXPECT_EQ(lowerCaseExtension("meshes.d/mug"), "");
+}
+
 }  // namespace
 }  // namespace early_fusion::core

@@ -21,6 +21,9 @@ inline constexpr std::array<Action, kActionCount> kAllActions = {Action::kPanLef
 /// The name used in messages, traces and on the command line: "PAN_LEFT", ..., "IDLE".
 const char* actionName(Action action);
 
+/// Whether the action takes an object away: COLLECT or REMOVE.
+constexpr bool picks(Action action) { return action == Action::kCollect || action == Action::kRemove; }
+
 /// @throws Error listing the seven names if `name` is none of them.
 Action actionFromName(const std::string& name);
 

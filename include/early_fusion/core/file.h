@@ -42,6 +42,9 @@ std::string resolvePath(const std::string& base_file, const std::string& path);
 /// install tree that this build was configured with. @throws Error if none has a config/ folder.
 std::string shareFolder();
 
+/// The extension of a file's name in lower case, with its dot: ".obj" of "Mug.OBJ"; empty if there is none.
+std::string lowerCaseExtension(const std::string& path);
+
 /// The YAML file that a name or a path refers to. A text that ends in .yaml or .yml or contains a folder is a path.
 /// Another text is a name: "simple" in `folder` "tasks" is config/tasks/simple.yaml of the package.
 /// @throws Error listing the known names.

@@ -5,6 +5,7 @@
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/model/action_choice.h"
+#include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/parameters.h"
 #include "early_fusion/ros/shared/topics.h"
 
@@ -95,15 +96,9 @@ void CorrectionTrainerNode::onTimer() {
 }
 
 void CorrectionTrainerNode::publishWeights() {
-  const std::string bytes = session_->weights().serialize();
-  Weights weights;
-  weights.header.stamp = ::ros::Time::now();
-  weights.id = session_->weightsId();
-  weights.mode = options_.mode;
-  weights.seed = options_.correction.seed;
-  weights.precision = session_->trainer().policy().options().precision;
-  weights.data.assign(bytes.begin(), bytes.end());
-  weights_publisher_.publish(weights);
+  weights_publisher_.publish(weightsMessage(session_->weights(), session_->weightsId(), options_.mode,
+                                            options_.correction.seed,
+                                            session_->trainer().policy().options().precision));
 }
 
 void trainOnBag(learning::CorrectionSession& session, const std::string& bag,

@@ -57,6 +57,7 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }, context),
       watch_(context.node),
       pairing_(kImageQueue),
+      annotation_(1 / options.annotated_rate_hz),
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
       action_publisher_(node_.advertise<Action>(kActionTopic, 512)),
@@ -162,7 +163,7 @@ Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
 }
 
 void PolicyNode::nameItem(core::Action action, const Request& request) {
-  const bool picks = action == core::Action::kCollect || action == core::Action::kRemove;
+  const bool picks = core::picks(action);
   LikelyItem item;
   if (options_.name_items && !request.items.empty() && (picks || options_.name_items_always)) {
     item = policy_.likeliestItem(picks ? action : core::Action::kCollect);
@@ -243,10 +244,7 @@ void PolicyNode::publishFrame(const std_msgs::Header& header) {
 }
 
 void PolicyNode::publishAnnotated(const std_msgs::Header& header, const Request& request) {
-  if (annotated_publisher_.getNumSubscribers() == 0) return;
-  const ::ros::WallTime now = ::ros::WallTime::now();
-  if (now - annotated_ < ::ros::WallDuration(1 / options_.annotated_rate_hz)) return;
-  annotated_ = now;
+  if (annotated_publisher_.getNumSubscribers() == 0 || !annotation_.due()) return;
   model::Annotation annotation;
   annotation.cone_radius_px =
       model::coneRadiusPx(sim::kConeHalfAngleRad, policy_.horizontalFovDeg() * M_PI / 180, policy_.imageSize());

@@ -164,6 +164,19 @@ SceneState sceneState(const Scene& scene, const core::Vocabulary& vocabulary,
   return result;
 }
 
+Weights weightsMessage(const nn::WeightsFile& file, const std::string& id, const std::string& mode, std::uint64_t seed,
+                       const std::string& precision) {
+  const std::string bytes = file.serialize();
+  Weights message;
+  message.header.stamp = ::ros::Time::now();
+  message.id = id;
+  message.mode = mode;
+  message.seed = seed;
+  message.precision = precision;
+  message.data.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
 std::string itemList(const std::vector<std::string>& items) { return items.empty() ? "nothing" : core::joined(items); }
 
 }  // namespace early_fusion::nodes

@@ -6,7 +6,6 @@ namespace early_fusion::nodes {
 
 namespace {
 
-constexpr double kWarningPeriodSec = 5.0;
 constexpr double kCheckPeriodSec = 0.1;
 
 }  // namespace
@@ -28,9 +27,7 @@ void Health::count(const std::string& event) { ++events_[event].total; }
 void Health::drop(const std::string& kind, const std::string& detail) {
   Counter& counter = drops_[kind];
   ++counter.total;
-  const ::ros::WallTime now = ::ros::WallTime::now();
-  if (counter.total > 1 && (now - counter.last_warning).toSec() < kWarningPeriodSec) return;
-  counter.last_warning = now;
+  if (!counter.warning.due()) return;
   ROS_WARN("dropped (%s, %lu so far): %s", kind.c_str(), static_cast<unsigned long>(counter.total), detail.c_str());
 }
 

@@ -1,7 +1,6 @@
 #include "early_fusion/ros/simulator/markers.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -18,9 +17,7 @@ constexpr double kNameGap = 0.02;     // [m], between an object and its name
 /// Whether rviz draws the object's file as the simulator does.
 bool isDrawnByRviz(const world::Object& object) {
   if (object.mesh.adapted) return false;
-  std::string extension = std::filesystem::path(object.mesh_file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = core::lowerCaseExtension(object.mesh_file);
   return extension == ".obj" || extension == ".stl" || extension == ".dae";
 }
 

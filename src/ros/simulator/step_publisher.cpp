@@ -20,7 +20,7 @@ constexpr int kEpisodeQueue = 64;
 StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const world::World> world, double marker_rate_hz)
     : world_(std::move(world)),
       rasterizer_(*world_, world_->options.image_size),
-      marker_period_(1.0 / marker_rate_hz),
+      markers_(1.0 / marker_rate_hz),
       orientation_(world_->rig.lattice().at(world_->rig.lattice().size() / 2)),
       image_transport_(node),
       camera_publisher_(image_transport_.advertiseCamera(kImageTopic, kStepQueue)),
@@ -81,10 +81,7 @@ void StepPublisher::publishJointStates() {
 }
 
 void StepPublisher::publishMarkers(const sim::Episode& episode, ::ros::Time stamp) {
-  if (marker_publisher_.getNumSubscribers() == 0) return;
-  const ::ros::WallTime now = ::ros::WallTime::now();
-  if (now - last_markers_ < marker_period_) return;
-  last_markers_ = now;
+  if (marker_publisher_.getNumSubscribers() == 0 || !markers_.due()) return;
   std_msgs::Header header;
   header.stamp = stamp;
   header.frame_id = world_->rig.worldFrame();

@@ -23,14 +23,6 @@ class Rethrow : public ::ros::CallbackInterface {
   std::exception_ptr exception_;
 };
 
-template <class Node>
-typename Node::Options optionsOf(const std::string& node) {
-  typename Node::Options options;
-  core::OptionSet set = options.options();
-  setFromParameters(set, privateParameters(set, node), node);
-  return options;
-}
-
 }  // namespace
 
 LocalWorker::LocalWorker(const std::string& name_space, std::shared_ptr<const world::World> world, int threads) {

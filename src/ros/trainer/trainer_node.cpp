@@ -58,15 +58,8 @@ TrainerNode::~TrainerNode() {
 void TrainerNode::goOn() { session_->trainer().finished() || session_->scoreDue() ? evaluate() : rollOut(); }
 
 void TrainerNode::publishWeights(const std::string& mode, std::uint64_t seed) {
-  const std::string bytes = session_->weights().serialize();
-  Weights weights;
-  weights.header.stamp = ::ros::Time::now();
-  weights.id = weights_id_ = session_->weightsId();
-  weights.mode = mode;
-  weights.seed = seed;
-  weights.precision = session_->options().policy.precision;
-  weights.data.assign(bytes.begin(), bytes.end());
-  workers_.publish(weights);
+  weights_id_ = session_->weightsId();
+  workers_.publish(weightsMessage(session_->weights(), weights_id_, mode, seed, session_->options().policy.precision));
 }
 
 void TrainerNode::play(RolloutPlan plan, std::function<void(learning::Trajectory)> on_trajectory,

@@ -18,6 +18,7 @@
 #include "early_fusion/ros/shared/files_folder.h"
 #include "early_fusion/ros/shared/health.h"
 #include "early_fusion/ros/shared/topic_watch.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 
 namespace early_fusion::nodes {
 
@@ -77,7 +78,7 @@ class PolicyNode {
   bool answer_valid_ = false;  // whether answer_ was decided by the current weights
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::string crop_warning_;  // of the last image
-  ::ros::WallTime annotated_;
+  WallThrottle annotation_;
   double latency_sec_ = 0;  // of the last decision
 
   image_transport::ImageTransport image_transport_;

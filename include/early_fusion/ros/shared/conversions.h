@@ -4,6 +4,7 @@
 #include <early_fusion/Request.h>
 #include <early_fusion/RunEpisodesGoal.h>
 #include <early_fusion/Scene.h>
+#include <early_fusion/Weights.h>
 #include <geometry_msgs/Pose.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -16,6 +17,7 @@
 #include "early_fusion/core/image.h"
 #include "early_fusion/learning/expert_drive.h"
 #include "early_fusion/learning/trajectory.h"
+#include "early_fusion/nn/weights_file.h"
 #include "early_fusion/sim/episode.h"
 #include "early_fusion/world/world.h"
 
@@ -36,6 +38,10 @@ learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
 
 /// Sets the requests of a goal's episodes to those of the task.
 void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
+
+/// Weights that act as told, stamped with the current time. Needs ros::init().
+Weights weightsMessage(const nn::WeightsFile& file, const std::string& id, const std::string& mode, std::uint64_t seed,
+                       const std::string& precision);
 
 /// An rgb8 message without row padding. Moves the pixels.
 sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& header);

@@ -11,6 +11,7 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/shared/node_context.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 
 namespace early_fusion::nodes {
 
@@ -36,7 +37,7 @@ class Health {
   struct Counter {
     std::uint64_t total = 0;
     std::uint64_t reported = 0;
-    ::ros::WallTime last_warning;
+    WallThrottle warning{5};  // seconds between two lines of the log
   };
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);

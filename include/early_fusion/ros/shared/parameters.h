@@ -20,6 +20,16 @@ core::GivenOptions privateParameters(const core::OptionSet& options,
 void setFromParameters(core::OptionSet& options, const core::GivenOptions& parameters,
                        const std::string& node = ::ros::this_node::getName());
 
+/// The options of a node class: its defaults and the parameters of the process's node, or of the named one.
+/// @throws core::Error as privateParameters() and setFromParameters().
+template <class Node>
+typename Node::Options optionsOf(const std::string& node = ::ros::this_node::getName()) {
+  typename Node::Options options;
+  core::OptionSet set = options.options();
+  setFromParameters(set, privateParameters(set, node), node);
+  return options;
+}
+
 /// The text of --help: parameter, unit, range, default and help of each option.
 std::string describeParameters(const core::OptionSet& options);
 

@@ -21,11 +21,9 @@ int runNode(int argc, char** argv, const std::string& name, const core::OptionSe
 /// The main() of a node class with a nested Options struct and a constructor that takes it.
 template <class Node>
 int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& spin) {
-  typename Node::Options options;
-  core::OptionSet set = options.options();
-  return runNode(argc, argv, name, set, [&] {
-    setFromParameters(set, privateParameters(set));
-    Node node(options);
+  typename Node::Options defaults;
+  return runNode(argc, argv, name, defaults.options(), [&] {
+    Node node(optionsOf<Node>());
     spin();
   });
 }

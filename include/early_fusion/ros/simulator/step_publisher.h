@@ -38,8 +38,7 @@ class StepPublisher {
 
   std::shared_ptr<const world::World> world_;
   render::Rasterizer rasterizer_;
-  ::ros::WallDuration marker_period_;
-  ::ros::WallTime last_markers_;
+  WallThrottle markers_;
   ::ros::Time last_stamp_;
   world::Orientation orientation_;
 
