@@ -70,8 +70,8 @@ def main():
                       file=sys.stderr, flush=True)
     for setting in options.setting or [""]:
         quiet, beside = (statistics.median(speeds[setting, busy]) for busy in (0, options.busy))
-        print(f"'{setting}': {quiet:,.0f} trajectories/h on the quiet machine, {beside:,.0f} beside {options.busy} busy "
-              f"process(es): {beside / quiet:.2f}")
+        print(f"'{setting}': {quiet:,.0f} trajectories/h on the quiet machine, {beside:,.0f} beside {options.busy} "
+              f"busy process(es): {beside / quiet:.2f}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-# The target CLI11::CLI11, which is headers only. Debian 11 and Ubuntu 20.04 have no package, so Debian 12's is downloaded
-# there. Offline: -DFETCHCONTENT_SOURCE_DIR_CLI11=FOLDER names the unpacked source.
+# The target CLI11::CLI11, which is headers only. Debian 11 and Ubuntu 20.04 have no package of it. There, Debian 12's
+# source is downloaded. Offline: -DFETCHCONTENT_SOURCE_DIR_CLI11=FOLDER names the unpacked source.
 find_package(CLI11 QUIET)
 if(NOT CLI11_FOUND)
   message(STATUS "CLI11 was not found (Debian 12: libcli11-dev): downloading it")

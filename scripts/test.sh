@@ -3,9 +3,9 @@
 #
 #   scripts/test.sh -R nn
 #
-# With SANITIZE=address,undefined, it runs them under these sanitizers, except those that need an ordinary build, such as
-# the tests of whole ROS nodes. With SANITIZE=thread, it runs the tests of what has threads. Each has a build folder of
-# its own.
+# With SANITIZE=address,undefined, it runs them under these sanitizers. It leaves out those that need an ordinary build,
+# such as the tests of whole ROS nodes. With SANITIZE=thread, it runs the tests of what has threads. Each has a build
+# folder of its own.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/build_folder.sh

@@ -127,7 +127,7 @@ test_noetic() {
   test_amd64 bullseye "$@"
 }
 
-# Mounts amd64's cross compiler in an arm64 chroot, and dpkg-deb, which unpacks packages much faster than an emulated one.
+# Mounts amd64's cross compiler and dpkg-deb in an arm64 chroot. They are much faster than emulated ones.
 mount_native_programs() {
   local folder=$1 native=$2 path
   mount --bind -o ro "$native/usr/bin/dpkg-deb" "$folder/usr/bin/dpkg-deb"

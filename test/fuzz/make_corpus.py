@@ -3,7 +3,8 @@
 
     make_corpus.py PACKAGE_FOLDER CORPUS_FOLDER
 
-The corpus has a folder for each target, and an empty one in found/ for what libFuzzer finds. Files of ../shared/cases/make_cases.py are added if it is there.
+The corpus has a folder for each target, and an empty one in found/ for what libFuzzer finds. If
+../shared/cases/make_cases.py is there, the corpus has the files that it writes, too.
 """
 import json
 import os

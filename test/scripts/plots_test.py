@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""The figures of plot_curves.py, plot_experiment.py and plot_corrections.py, and their errors. Usage: plots_test.py SOURCE"""
+"""The figures of plot_curves.py, plot_experiment.py and plot_corrections.py, and their errors.
+
+Usage: plots_test.py SOURCE
+"""
 import os
 import re
 import subprocess
