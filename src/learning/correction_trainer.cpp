@@ -49,10 +49,7 @@ std::unique_ptr<Learner> startFrom(const CorrectionOptions& options, const world
 
 /// @throws Error if the options do not fit each other.
 sim::Task rehearsalTask(const CorrectionOptions& options) {
-  if (options.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
+  refuseHeldOutSeed("seed", options.seed);
   if (options.training.restart_policy) {
     throw core::Error(
         "restart_policy: a policy that restarts in each round forgets the weights that it starts from; "

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "early_fusion/core/error.h"
+
 namespace early_fusion::learning {
 
 namespace {
@@ -15,6 +17,11 @@ double mean(const std::vector<EpisodeOutcome>& outcomes, Measure measure) {
 }
 
 }  // namespace
+
+void refuseHeldOutSeed(const std::string& option, std::uint64_t seed) {
+  if (seed != kHeldOutSeed) return;
+  throw core::Error(option + ": " + std::to_string(seed) + " is the seed of the held-out episodes; choose another");
+}
 
 Evaluation::Evaluation(std::string policy_name, const sim::Task& episodes_task, std::uint64_t episodes_seed)
     : policy(std::move(policy_name)),

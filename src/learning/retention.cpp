@@ -92,10 +92,7 @@ Retention::Retention(model::TrainablePolicy& frozen, const world::World& world, 
       adam_(branch_.parameters().values().size(), adamOptions(training_)),
       runner_(world, sim::withUpTo(training_.max_instances, task_), options.seed,
               trainingExpertFromName(training_.training_expert)) {
-  if (options.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
+  refuseHeldOutSeed("seed", options.seed);
   runner_.setObserver([this](std::uint64_t episode, const sim::Episode& before, const TrajectoryStep&) {
     first_requests_[episode].push_back(firstRequest(first_, options_.seed, episode, before));
   });

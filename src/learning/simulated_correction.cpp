@@ -121,10 +121,7 @@ void simulateCorrections(const SimulatedCorrectionOptions& options,
                          const std::function<void(const std::string&)>& report, const std::function<void()>& may_stop) {
   const Place robot{world::loadWorld(options.robot_world), sim::loadTask(options.robot_task)};
   const Place rehearsal{world::loadWorld(options.correction.world), sim::loadTask(options.correction.task)};
-  if (options.robot_seed == kHeldOutSeed) {
-    throw core::Error("robot_seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
+  refuseHeldOutSeed("robot_seed", options.robot_seed);
   CorrectionSession session(withItems(options.correction, *robot.world), rehearsal.world);
   model::TrainablePolicy& policy = session.trainer().policy();
   if (policy.options().image_size != robot.world->options.image_size) {

@@ -96,10 +96,7 @@ sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
 }  // namespace
 
 void checkSession(const SessionOptions& options, const world::World& world) {
-  if (options.seed == kHeldOutSeed) {
-    throw core::Error("seed: " + std::to_string(kHeldOutSeed) +
-                      " is the seed of the held-out episodes; choose another");
-  }
+  refuseHeldOutSeed("seed", options.seed);
   if (options.policy.image_size != world.options.image_size) {
     throw core::Error("image_size: the policy's is " + std::to_string(options.policy.image_size) +
                       " px and the world's is " + std::to_string(world.options.image_size) +

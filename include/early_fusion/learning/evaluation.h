@@ -12,6 +12,9 @@ namespace early_fusion::learning {
 /// The seed of the held-out episodes, on which scores are reported. No training session may use it.
 inline constexpr std::uint64_t kHeldOutSeed = 20191104;
 
+/// @param option the name of the option that is the seed. @throws core::Error if it is kHeldOutSeed.
+void refuseHeldOutSeed(const std::string& option, std::uint64_t seed);
+
 /// The score of one episode.
 struct EpisodeOutcome {
   std::uint64_t episode = 0;
