@@ -277,6 +277,7 @@ class Soak:
         """Whether train.launch has trained the session, which is disturbed, to its end."""
         words = ["%s:=%s" % pair for pair in given] + ["output:=" + output]
         words += ["rate:=%g" % self.arguments.rate, "respawn_delay:=0.2", "stall_timeout:=2", "tf:=false"]
+        words.append("separate:=true")  # so that each of them can die alone
         with open(output + ".log", "wb") as log:
             session = subprocess.Popen(["roslaunch", "early_fusion", "train.launch"] + words, stdout=log, stderr=log)
         disturbance = Disturbance(self.master, self.folder, 3 * dict(given)["seed"], self.arguments.kill_every)
