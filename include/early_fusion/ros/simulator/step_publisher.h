@@ -10,6 +10,7 @@
 
 #include "early_fusion/render/rasterizer.h"
 #include "early_fusion/ros/shared/conversions.h"
+#include "early_fusion/ros/shared/wall_throttle.h"
 
 namespace early_fusion::nodes {
 
