@@ -158,7 +158,7 @@ auto joined(Half a, Half b) {
 template <int N>
 FloatLanes laidEndToEnd(const float* base, const std::int32_t* offset, int first) {
   const auto record = [=](int after) { return base + offset[first / N + after] + first % N; };
-  const auto four = [=](int after) { return loadLanes<Four>(record(after)); };
+  [[maybe_unused]] const auto four = [=](int after) { return loadLanes<Four>(record(after)); };
   if constexpr (kLanes <= N) {
     return loadLanes<FloatLanes>(record(0));
   } else if constexpr (2 * N == kLanes) {
