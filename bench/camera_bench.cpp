@@ -29,6 +29,7 @@ struct CameraBenchOptions {
   int images = 900;
   double rate_hz = 30;
   int busy = 1;
+  bool frames = false;
 };
 
 /// Processes that do nothing but compute, until the object ends.
@@ -51,12 +52,15 @@ class BusyProcesses {
   std::vector<pid_t> children_;
 };
 
-sensor_msgs::ImagePtr bayerImage(std::uint64_t number) {
+/// An image of noise.
+/// @param frame a frame as the simulator sends it, 128 x 128 in rgb8, instead of a camera's Bayer image of 640 x 480.
+sensor_msgs::ImagePtr noise(bool frame, std::uint64_t number) {
   auto image = boost::make_shared<sensor_msgs::Image>();
-  image->width = image->step = 640;
-  image->height = 480;
-  image->encoding = "bayer_rggb8";
-  image->data.resize(640 * 480);
+  image->width = frame ? 128 : 640;
+  image->height = frame ? 128 : 480;
+  image->encoding = frame ? "rgb8" : "bayer_rggb8";
+  image->step = frame ? 3 * image->width : image->width;
+  image->data.resize(image->step * image->height);
   core::Random random(number);
   for (std::uint8_t& value : image->data) value = static_cast<std::uint8_t>(random.next());
   return image;
@@ -101,8 +105,9 @@ double processorMs(int process) {
 /// Sends images with requests and waits for each action.
 class CameraBench {
  public:
-  CameraBench()
-      : image_publisher_(node_.advertise<sensor_msgs::Image>(nodes::kImageTopic, 10)),
+  explicit CameraBench(bool frames)
+      : images_({noise(frames, 1), noise(frames, 2), noise(frames, 3)}),
+        image_publisher_(node_.advertise<sensor_msgs::Image>(nodes::kImageTopic, 10)),
         request_publisher_(node_.advertise<Request>(nodes::kRequestTopic, 10)),
         action_subscriber_(node_.subscribe<Action>(
             nodes::kActionTopic, 10, [this](const ActionConstPtr& action) { answered_ = action->header.stamp; },
@@ -133,14 +138,14 @@ class CameraBench {
 
  private:
   ros::NodeHandle node_;
+  const std::vector<sensor_msgs::ImagePtr> images_;
   ros::Publisher image_publisher_, request_publisher_;
   ros::Subscriber action_subscriber_;
   ros::Time answered_;
-  const std::vector<sensor_msgs::ImagePtr> images_ = {bayerImage(1), bayerImage(2), bayerImage(3)};
 };
 
 void run(const CameraBenchOptions& options) {
-  CameraBench bench;
+  CameraBench bench(options.frames);
   bench.waitForPolicy();
   for (std::uint32_t warm_up = 0; warm_up < 30; ++warm_up) bench.ask(warm_up);
   const int process = processOf(ros::names::resolve("policy"));
@@ -156,9 +161,10 @@ void run(const CameraBenchOptions& options) {
   }
   std::sort(times.begin(), times.end());
   std::printf(
-      "%zu Bayer images of 640 x 480 at %.0f Hz beside %d busy processes: median %.2f ms, 99 %% %.2f ms; "
+      "%zu %s at %.0f Hz beside %d busy processes: median %.2f ms, 99 %% %.2f ms; "
       "%.2f ms of processor an image; memory of the node %.1f MB after a tenth of them, %.1f MB at the end\n",
-      times.size(), options.rate_hz, options.busy, times[times.size() / 2], times[times.size() * 99 / 100],
+      times.size(), options.frames ? "frames" : "Bayer images of 640 x 480", options.rate_hz, options.busy,
+      times[times.size() / 2], times[times.size() * 99 / 100],
       (processorMs(process) - processor_before) / static_cast<double>(times.size()), early_mb, residentMb(process));
 }
 
@@ -174,6 +180,7 @@ int main(int argc, char** argv) {
   app.add_option("--images", options.images, "number of images")->check(CLI::Range(10, 10000000));
   app.add_option("--rate", options.rate_hz, "images a second; 0: each image when the last one is answered");
   app.add_option("--busy", options.busy, "number of busy processes beside")->check(CLI::Range(0, 64));
+  app.add_flag("--frames", options.frames, "send frames as the simulator does, not a camera's Bayer images");
   std::reverse(arguments.begin() + 1, arguments.end());
   arguments.erase(arguments.begin());
   try {
