@@ -18,8 +18,12 @@ namespace early_fusion::nodes {
 
 namespace {
 
-// A camera sends many images for each request. So many wait for a request with their stamp.
-constexpr int kImageQueue = 30;
+// A camera sends many images for each request. So many wait for a request with their stamp, if they fit.
+constexpr int kWaitingImages = 30;
+constexpr std::size_t kWaitingBytes = std::size_t{64} << 20;
+constexpr int kImageQueue = 6;  // images that come during a decision; a large one has tens of MB
+constexpr int kRequestQueue = 30;
+constexpr std::size_t kMaxCropWarnings = 20;
 
 }  // namespace
 
@@ -56,7 +60,7 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
       node_(context.node),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }, context),
       watch_(context.node),
-      pairing_(kImageQueue),
+      pairing_(kWaitingImages, kWaitingBytes),
       annotation_(1 / options.annotated_rate_hz),
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
@@ -76,8 +80,8 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
       });
   const auto hints = ::ros::TransportHints().tcpNoDelay();
   request_subscriber_ = node_.subscribe<Request>(
-      kRequestTopic, kImageQueue, [this](const RequestConstPtr& request) { onRequest(request); }, ::ros::VoidConstPtr(),
-      hints);
+      kRequestTopic, kRequestQueue, [this](const RequestConstPtr& request) { onRequest(request); },
+      ::ros::VoidConstPtr(), hints);
   image_subscriber_ = image_transport_.subscribe(kImageTopic, kImageQueue, &PolicyNode::onImage, this,
                                                  image_transport::TransportHints(options_.image_transport, hints));
   if (policy_.loaded()) expectTopics();
