@@ -76,7 +76,7 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
   camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
       kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) {
         camera_info_ = message;
-        watch_.heard(camera_info_subscriber_.getTopic());
+        watch_.heard(camera_info_subscriber_.getTopic(), camera_info_subscriber_.getNumPublishers());
       });
   const auto hints = ::ros::TransportHints().tcpNoDelay();
   request_subscriber_ = node_.subscribe<Request>(
@@ -98,10 +98,12 @@ void PolicyNode::expectTopics() {
 }
 
 void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image) {
-  watch_.heard(image_subscriber_.getTopic());
-  watch_.expect({"camera_info", camera_info_subscriber_.getTopic(), "sensor_msgs/CameraInfo",
-                 "remap camera/camera_info to the camera's (real_camera.launch: camera_info); until then the policy "
-                 "sees the largest square of the image"});
+  watch_.heard(image_subscriber_.getTopic(), image_subscriber_.getNumPublishers());
+  NeededTopic info{"camera_info", camera_info_subscriber_.getTopic(), "sensor_msgs/CameraInfo",
+                   "remap camera/camera_info to the camera's (real_camera.launch: camera_info); until then the policy "
+                   "sees the largest square of the image"};
+  info.one_publisher = true;
+  watch_.expect(info);
   if (const auto pair = pairing_.add(image)) answer(*pair->first, *pair->second);
 }
 
@@ -159,10 +161,9 @@ Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
   const bool rectified =
       options_.rectified == "auto" ? isRectifiedTopic(image_subscriber_.getTopic()) : options_.rectified == "true";
   Crop crop = cropToView(image, camera_info_.get(), rectified, policy_.horizontalFovDeg());
-  if (crop.warning != crop_warning_ && !crop.warning.empty()) {
+  if (!crop.warning.empty() && crop_warnings_.size() < kMaxCropWarnings && crop_warnings_.insert(crop.warning).second) {
     ROS_WARN("%s: %s", camera_info_subscriber_.getTopic().c_str(), crop.warning.c_str());
   }
-  crop_warning_ = crop.warning;
   return crop;
 }
 
