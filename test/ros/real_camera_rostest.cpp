@@ -10,6 +10,24 @@
 namespace early_fusion::nodes {
 namespace {
 
+constexpr char kOldTransforms[] = "old_transforms";
+
+/// A second node that publishes the camera's pose, with stamps of long ago, as a bag does.
+void publishOldTransforms(int argc, char** argv) {
+  ros::init(argc, argv, kOldTransforms);
+  ros::NodeHandle node;
+  tf2_ros::TransformBroadcaster broadcaster;
+  geometry_msgs::TransformStamped transform;
+  transform.header.frame_id = "base_link";
+  transform.child_frame_id = "camera_optical_frame";
+  transform.transform.rotation.w = 1;
+  for (int i = 0; ros::ok(); ++i) {
+    transform.header.stamp = ros::Time(100 + 0.02 * i);
+    broadcaster.sendTransform(transform);
+    ros::WallDuration(0.02).sleep();
+  }
+}
+
 TEST_F(RealCameraTest, AnImageIsAskedAboutAndTheNextStepFollowsTheAction) {
   const RequestConstPtr first = nextRequest();
   ASSERT_TRUE(first);
@@ -259,6 +277,15 @@ TEST_F(RealCameraTest, WithoutAPickServerNothingIsAskedAndItIsNamed) {
   EXPECT_TRUE(nextRequest());
 }
 
+TEST_F(RealCameraTest, ASecondPublisherOfOlderTransformsIsNamedAndLeftOut) {
+  const ChildProcess other({"/proc/self/exe", kOldTransforms}, {}, testing::TempDir() + "old_transforms.log");
+  EXPECT_TRUE(isLogged("/old_transforms publish the transform of 'camera_optical_frame' with stamps ")) << log_;
+  const PickGoalConstPtr goal = goalOf("COLLECT", "mug");
+  ASSERT_TRUE(goal);
+  EXPECT_NEAR(goal->pose.pose.position.z, 0.9, 1e-6) << "by the newer transforms";
+  answer(true);
+}
+
 class AloneTest : public RealCameraTest {
  protected:
   AloneTest() : RealCameraTest("alone") {}
@@ -369,9 +396,9 @@ TEST_F(TwoCamerasTest, ASilentPolicyIsNamedByItsTopic) {
 }
 
 TEST_F(TwoCamerasTest, ASecondPublisherOfOlderImagesIsNamedAndIgnored) {
-  const ChildProcess other(
-      {"rostopic", "pub", "-r", "50", "/two_cameras/camera/image_raw", "sensor_msgs/Image", "{header: {stamp: 5}}"}, {},
-      testing::TempDir() + "second_camera.log");
+  const ChildProcess other({"rostopic", "pub", "-r", "50", "/two_cameras/camera/image_raw", "sensor_msgs/Image",
+                            "{header: {stamp: {secs: 5}}}"},
+                           {}, testing::TempDir() + "second_camera.log");
   EXPECT_TRUE(isLogged("2 nodes publish image on /two_cameras/camera/image_raw: /")) << log_;
   RequestConstPtr asked = nextRequest();
   ASSERT_TRUE(asked);
@@ -401,6 +428,10 @@ TEST_F(DepthTest, TfTellsWhetherTheCameraStandsStill) {
 }  // namespace early_fusion::nodes
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == early_fusion::nodes::kOldTransforms) {
+    early_fusion::nodes::publishOldTransforms(argc, argv);
+    return 0;
+  }
   testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "real_camera_rostest");
   ros::NodeHandle keeps_ros_running;
