@@ -26,6 +26,8 @@ namespace early_fusion::nodes {
 
 using Items = std::vector<std::string>;
 
+/// With this argument, the test's program is a node that publishes old transforms.
+constexpr char kOldTransforms[] = "old_transforms";
 constexpr double kSilenceSec = 60;  // longer than the time between two warnings about a silent topic
 
 /// The partners of a request node in a namespace: camera, policy, unit, tf and pick server, which a test scripts.

@@ -32,6 +32,7 @@ foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_n
   endif()
 endforeach()
 if(rostest_FOUND)
+  target_sources(real_camera_rostest PRIVATE ros/real_camera_faults_rostest.cpp)
   add_rostest(ros/virtual_path_trajectory.test DEPENDENCIES virtual_path_rostest)
   target_link_libraries(node_parameters_rostest gtest_main)
   target_compile_definitions(node_parameters_rostest PRIVATE EARLY_FUSION_NODES="$<TARGET_FILE_DIR:simulator_node>")
