@@ -27,13 +27,21 @@ bool hangsFrom(const urdf::ModelInterface& model, const urdf::Joint& joint, cons
   return false;
 }
 
+/// The camera's axes as columns, in the pan joint's frame.
+Eigen::Matrix3d panFromCamera(const PanTiltChain& chain, double tilt_rad) {
+  return chain.pan_from_tilt.linear() * Eigen::AngleAxisd(tilt_rad, chain.tilt_axis) * chain.tilt_from_camera.linear();
+}
+
 }  // namespace
 
 double PanTiltChain::turnsLeft(double tilt_rad) const {
-  const Eigen::Matrix3d camera =
-      pan_from_tilt.linear() * Eigen::AngleAxisd(tilt_rad, tilt_axis) * tilt_from_camera.linear();
+  const Eigen::Matrix3d camera = panFromCamera(*this, tilt_rad);
   return pan_axis.cross(camera.col(2)).dot(-camera.col(0));
 }
+
+double PanTiltChain::panAlongView(double tilt_rad) const { return pan_axis.dot(panFromCamera(*this, tilt_rad).col(2)); }
+
+double PanTiltChain::tiltAlongView() const { return tilt_axis.dot(tilt_from_camera.linear().col(2)); }
 
 double PanTiltChain::turnsDown() const {
   const Eigen::Matrix3d camera = tilt_from_camera.linear();

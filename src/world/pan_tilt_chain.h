@@ -20,6 +20,10 @@ struct PanTiltChain {
   double turnsLeft(double tilt_rad) const;
   /// The same for the tilt joint: positive where positive angles turn the view down in the image.
   double turnsDown() const;
+  /// The cosine of the angle between view and pan axis.
+  double panAlongView(double tilt_rad) const;
+  /// The same for the tilt axis.
+  double tiltAlongView() const;
 };
 
 /// @param file names the URDF in errors. @throws Error naming what is missing, or a joint in between that moves.

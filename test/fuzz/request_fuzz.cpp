@@ -12,7 +12,7 @@ using namespace early_fusion;
 namespace {
 
 constexpr int kFrameSize = 16;
-constexpr std::size_t kCapacity = 8;
+constexpr std::size_t kCapacity = 8, kMaxBytes = 1 << 20;
 
 nodes::ActingPolicy makeActing() {
   model::PolicyOptions options;
@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static nodes::ActingPolicy policy = makeActing();
   static const core::Image frame(kFrameSize, kFrameSize);
   fuzz::Reader input(data, size);
-  nodes::RequestPairing pairing(kCapacity);
+  nodes::RequestPairing pairing(kCapacity, kMaxBytes);
   while (!input.empty()) {
     std::optional<nodes::RequestPairing::Pair> pair;
     if (input.number<std::uint8_t>() % 2 == 0) {

@@ -121,6 +121,15 @@ TEST(JointStepper, OldJointStatesAreNotMovedFrom) {
   EXPECT_NE(stepper.obstacle(3.5).find("3.5 s old"), std::string::npos);
 }
 
+TEST(JointStepper, AJointStateThatWasMeasuredEarlierChangesNothing) {
+  JointStepper stepper(limited(-1, 1), kTimeout);
+  stepper.observe(0.3, "/driver", 1);
+  EXPECT_TRUE(stepper.observe(-0.3, "/driver", 0.5));
+  EXPECT_EQ(stepper.obstacle(1), "");
+  stepper.begin();
+  EXPECT_DOUBLE_EQ(stepper.position(), 0.3);
+}
+
 TEST(JointStepper, PublishersThatDisagreeAreNamed) {
   JointStepper stepper = standing(limited(-1, 1), 0.5);
   stepper.observe(0, "/joint_state_publisher", 0.1);

@@ -208,5 +208,33 @@ TEST_F(Launch, AWorldFileThatCannotBeReadEndsItAtOnceWithTheReason) {
   EXPECT_NE(output.find(world + ":1: unknown world option 'camera'; known are objects"), std::string::npos) << output;
 }
 
+struct WrongChoice {
+  std::string file;
+  std::vector<std::string> arguments;
+  std::string error;
+};
+
+TEST_F(Launch, AValueThatIsNoChoiceEndsItAtOnceAndTheChoicesAreNamed) {
+  const std::vector<WrongChoice> wrong = {
+      {"real_camera.launch", {"robot:=Virtual"}, "robot is Virtual; it must be real or virtual"},
+      {"real_camera.launch", {"pan_tilt:=maybe"}, "maybe is not a 'bool' type"},
+      {"correct.launch", {"output:=/tmp/run", "robot:=real"}, "robot is real; it must be simulator or none"},
+      {"correct.launch", {"output:=/tmp/run", "person:=me"}, "person is me; it must be keyboard, simulated or none"},
+      {"train.launch", {"output:=/tmp/run", "separate:=maybe"}, "maybe is not a 'bool' type"},
+      {"view.launch", {"bag:=/tmp/bag", "loop:=maybe"}, "maybe is not a 'bool' type"},
+      {"record.launch", {"bag:=/tmp/bag", "annotated:=maybe"}, "maybe is not a 'bool' type"}};
+  for (const WrongChoice& choice : wrong) {
+    const std::string output = dump(choice.file, choice.arguments);
+    EXPECT_NE(output.find(choice.error), std::string::npos) << choice.file << ": " << output;
+  }
+}
+
+TEST_F(Launch, ARealCameraGivesPositionsInTheFrameOfItsRobot) {
+  EXPECT_EQ(parameter("/request/target_frame", dump("real_camera.launch", {})), "base_link");
+  const std::string virtual_robot = dump("real_camera.launch", {"robot:=virtual"});
+  EXPECT_EQ(parameter("/request/target_frame", virtual_robot), "world");
+  EXPECT_EQ(parameter("/virtual_robot/task", virtual_robot), "medium");
+}
+
 }  // namespace
 }  // namespace early_fusion::nodes

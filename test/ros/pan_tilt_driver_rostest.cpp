@@ -49,8 +49,10 @@ class PanTiltDriverTest : public testing::Test {
     action_publisher_.publish(action);
   }
 
-  void publishStates(const std::vector<std::string>& names, const std::vector<double>& positions) {
+  void publishStates(const std::vector<std::string>& names, const std::vector<double>& positions,
+                     ::ros::Time stamp = {}) {
     sensor_msgs::JointState states;
+    states.header.stamp = stamp;
     states.name = names;
     states.position = positions;
     joint_publisher_.publish(states);
@@ -142,6 +144,25 @@ TEST_F(PanTiltDriverTest, OldJointStatesAreNotMovedFrom) {
   spinFor(2.1);
   EXPECT_TRUE(isRefused("the newest joint state of 'pan_joint' is ")) << log_;
   EXPECT_FALSE(pan_);
+}
+
+TEST_F(PanTiltDriverTest, JointStatesAreOldByTheirStampAndNotByWhenTheyCome) {
+  spinFor(1.6);  // until the joint states of other tests are older
+  publishStates({"pan_joint", "tilt_joint"}, {0.6, 0.3}, ::ros::Time::now() - ::ros::Duration(1.5));
+  act("PAN_LEFT");
+  EXPECT_TRUE(panBecomes(0.6 + kStepRad)) << "within joint_state_timeout";
+  pan_.reset();
+  spinFor(0.7);  // it came 1 s ago, but was measured 2.5 s ago
+  act("PAN_LEFT");
+  spinFor(0.2);
+  EXPECT_FALSE(pan_);
+  EXPECT_TRUE(isRefused("the newest joint state of 'pan_joint' is ")) << log_;
+  publishStates({"pan_joint", "tilt_joint"}, {0.6, 0.3}, ::ros::Time::now() - ::ros::Duration(100));
+  EXPECT_TRUE(isLogged("that of 'pan_joint' from /")) << log_;
+  EXPECT_NE(log_.find("the stamp of the joint states is 100."), std::string::npos) << log_;
+  publishStates({"pan_joint", "tilt_joint"}, {-0.5, 0.3}, ::ros::Time::now() + ::ros::Duration(100));
+  act("PAN_LEFT");
+  EXPECT_TRUE(panBecomes(-0.5 + kStepRad)) << "a clock that is ahead: as if it came without a stamp";
 }
 
 TEST_F(PanTiltDriverTest, WithoutAControllerNothingIsCommandedAndItsTopicIsNamed) {

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@
 namespace early_fusion::nodes {
 
 using Items = std::vector<std::string>;
+
+/// With this argument, the test's program is a node that publishes old transforms.
+constexpr char kOldTransforms[] = "old_transforms";
+constexpr double kSilenceSec = 60;  // longer than the time between two warnings about a silent topic
 
 /// The partners of a request node in a namespace: camera, policy, unit, tf and pick server, which a test scripts.
 class RealCameraTest : public testing::Test {
@@ -52,22 +57,30 @@ class RealCameraTest : public testing::Test {
   void startServer() {
     server_ = std::make_unique<actionlib::SimpleActionServer<PickAction>>(node_, kPickAction, false);
     server_->registerGoalCallback([this] { goal_ = server_->acceptNewGoal(); });
-    server_->registerPreemptCallback([this] { server_->setPreempted(); });
+    server_->registerPreemptCallback([this] {
+      if (ends_when_cancelled_) server_->setPreempted();
+    });
     server_->start();
   }
 
   bool request(const Items& items) {
     SetRequest call;
     call.request.items = items;
-    return ::ros::service::call(node_.resolveName(kSetRequestService), call) && call.response.success;
+    const bool called = ::ros::service::call(node_.resolveName(kSetRequestService), call);
+    said_ = call.response.message;
+    return called && call.response.success;
   }
 
   /// What the unit, tf and the camera say at one time.
-  void publishAll() {
+  virtual void publishAll() {
     sensor_msgs::JointState states;
     states.name = {"elbow", "tilt_joint", "pan_joint"};
     states.position = {1, tilt_, 0};
-    joint_publisher_.publish(states);
+    if (joint_delay_sec_ > 0) states.header.stamp = ::ros::Time::now();
+    late_joints_.push_back({::ros::WallTime::now() + ::ros::WallDuration(joint_delay_sec_), states});
+    for (; !late_joints_.empty() && late_joints_.front().first <= ::ros::WallTime::now(); late_joints_.pop_front()) {
+      if (publishes_joints_) joint_publisher_.publish(late_joints_.front().second);
+    }
     for (const char* frame : {"camera_optical_frame", "moving_optical_frame"}) {
       // A camera at (0.1, 0.2, 1.4) that looks along x, 30 degrees downwards.
       geometry_msgs::TransformStamped transform;
@@ -87,7 +100,7 @@ class RealCameraTest : public testing::Test {
     }
     sensor_msgs::Image image;
     image.header.frame_id = image_frame_;
-    image.header.stamp = ::ros::Time::now() - ago_;
+    image.header.stamp = ::ros::Time::now() - ago_ - camera_behind_;
     image_publisher_.publish(image);
   }
 
@@ -136,8 +149,8 @@ class RealCameraTest : public testing::Test {
     return asked ? asked->items : Items{"no request"};
   }
 
-  bool isLogged(const std::string& text) {
-    return publishUntil([&] { return log_.find(text) != std::string::npos; });
+  bool isLogged(const std::string& text, double timeout_sec = 20) {
+    return publishUntil([&] { return log_.find(text) != std::string::npos; }, timeout_sec);
   }
 
   ::ros::NodeHandle node_;
@@ -148,9 +161,12 @@ class RealCameraTest : public testing::Test {
   std::vector<RequestConstPtr> requests_;
   PickGoalConstPtr goal_;
   FoundConstPtr found_;
-  std::string image_frame_ = "camera_optical_frame", log_;
-  double tilt_ = 0.3;
-  ::ros::Duration ago_;  // how much earlier the stamps of images and transforms are
+  std::string image_frame_ = "camera_optical_frame", log_, said_;  // said_: of the service
+  double tilt_ = 0.3, joint_delay_sec_ = 0;
+  std::deque<std::pair<::ros::WallTime, sensor_msgs::JointState>> late_joints_;
+  bool ends_when_cancelled_ = true, publishes_joints_ = true;
+  ::ros::Duration ago_;            // how much earlier the stamps of images and transforms are
+  ::ros::Duration camera_behind_;  // the same for images only
 };
 
 }  // namespace early_fusion::nodes

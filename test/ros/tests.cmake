@@ -4,8 +4,8 @@ add_library(${PROJECT_NAME}_child_process STATIC ros/child_process.cpp)
 target_link_libraries(${PROJECT_NAME}_child_process ${PROJECT_NAME}_settings)
 
 foreach(name acting_policy camera_crop camera_image conversions correction_recorder files_folder joint_stepper markers
-    option_tables pan_tilt_stepper presses request_list request_pairing rollout_recorder sight_line standstill take_over
-    topic_watch virtual_camera virtual_joint wall_throttle)
+    option_tables pan_tilt_stepper presses request_list request_pairing rollout_recorder sight_line stamps standstill
+    take_over topic_watch transform_gate virtual_camera virtual_joint wall_throttle)
   early_fusion_add_test(ros ${name}_test)
   target_include_directories(ros_${name}_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 endforeach()
@@ -32,6 +32,8 @@ foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_n
   endif()
 endforeach()
 if(rostest_FOUND)
+  target_sources(real_camera_rostest PRIVATE ros/real_camera_faults_rostest.cpp)
+  add_rostest(ros/virtual_path_trajectory.test DEPENDENCIES virtual_path_rostest)
   target_link_libraries(node_parameters_rostest gtest_main)
   target_compile_definitions(node_parameters_rostest PRIVATE EARLY_FUSION_NODES="$<TARGET_FILE_DIR:simulator_node>")
 endif()

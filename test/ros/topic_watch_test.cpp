@@ -36,5 +36,21 @@ TEST(TopicWatch, NamesATopicOfAnotherType) {
               {"has type sensor_msgs/PointCloud2, not sensor_msgs/Image"});
 }
 
+TEST(TopicWatch, NamesTheNodesThatPublishOneTopic) {
+  const std::string text = rivalsOn(kImages, {{"/camera/image_raw", "sensor_msgs/Image", {"/driver", "/play_1"}},
+                                              {"/other/image_raw", "sensor_msgs/Image", {"/a", "/b"}}});
+  expectWords(text, {"2 nodes publish image on /camera/image_raw: /driver, /play_1; stop all but one"});
+  EXPECT_EQ(rivalsOn(kImages, {{"/camera/image_raw", "sensor_msgs/Image", {"/driver"}}}), "");
+}
+
+TEST(TopicWatch, ActionServersAreThoseWhoSubscribeToGoalsOfTheType) {
+  const std::string type = "early_fusion/PickActionGoal";
+  EXPECT_EQ(actionServers(type, {{"/gripper/pick/goal", type, {"/gripper"}},
+                                 {"/arm/take/goal", type, {"/arm"}},
+                                 {"/arm/move/goal", "other/MoveActionGoal", {"/arm"}},
+                                 {"/recorded", type, {"/record"}}}),
+            (std::vector<std::string>{"/arm/take (of /arm)", "/gripper/pick (of /gripper)"}));
+}
+
 }  // namespace
 }  // namespace early_fusion::nodes

@@ -21,7 +21,8 @@ namespace {
 
 class VirtualRobotTest : public testing::Test {
  protected:
-  VirtualRobotTest() : world_(world::loadWorld("")), picker_(kPickAction, false) {
+  explicit VirtualRobotTest(const std::string& name_space = "")
+      : world_(world::loadWorld("")), node_(name_space), picker_(node_, kPickAction, false) {
     pan_publisher_ = node_.advertise<std_msgs::Float64>(kPanCommandTopic, 1);
     tilt_publisher_ = node_.advertise<std_msgs::Float64>(kTiltCommandTopic, 1);
     trajectory_publisher_ = node_.advertise<trajectory_msgs::JointTrajectory>(kTrajectoryCommandTopic, 1);
@@ -48,7 +49,7 @@ class VirtualRobotTest : public testing::Test {
     Reset reset;
     reset.request.seed = 5;
     reset.request.episode = episode;
-    ASSERT_TRUE(::ros::service::call(kResetService, reset));
+    ASSERT_TRUE(::ros::service::call(node_.resolveName(kResetService), reset));
     ASSERT_TRUE(reset.response.success) << reset.response.message;
   }
 
@@ -142,6 +143,25 @@ TEST_F(VirtualRobotTest, APickTakesAwayWhatTheCameraPointsAt) {
   EXPECT_FALSE(failed->success);
   EXPECT_NE(failed->message.find("nothing is within 3 degrees"), std::string::npos) << failed->message;
   EXPECT_NE(pick("JUMP")->message.find("COLLECT"), std::string::npos);
+}
+
+class ClumsyRobotTest : public VirtualRobotTest {
+ protected:
+  ClumsyRobotTest() : VirtualRobotTest("clumsy") {}
+};
+
+TEST_F(ClumsyRobotTest, APickFailsAndLeavesTheObject) {
+  begin(1);
+  const sim::Episode episode(*world_, {sim::loadTask("simple"), 5, 1});
+  const world::Orientation at = episode.cone().orientationsOf(0).front();
+  turnTo(at.pan * world::kStepRad, at.tilt * world::kStepRad);
+  ASSERT_TRUE(spinUntil([&] { return standsAt(at.pan * world::kStepRad, at.tilt * world::kStepRad); }));
+  const sensor_msgs::ImageConstPtr before = nextImage();
+  const PickResultConstPtr failed = pick("COLLECT");
+  ASSERT_TRUE(failed);
+  EXPECT_FALSE(failed->success);
+  EXPECT_EQ(failed->message, "the gripper slipped (pick_failure)");
+  EXPECT_EQ(nextImage()->data, before->data);
 }
 
 }  // namespace

@@ -102,8 +102,34 @@ TEST(PanTiltUnit, SaysWhatIsWrongWithAJoint) {
             std::string::npos);
   EXPECT_NE(errorOfUnit(kPanAxis, R"(<axis xyz="0 1 0"/>)").find("does not turn the camera left or right"),
             std::string::npos);
-  EXPECT_NE(errorOfUnit(kTiltAxis, R"(<axis xyz="1 0 0"/>)").find("does not turn the camera up or down"),
+  EXPECT_NE(errorOfUnit(kTiltAxis, R"(<axis xyz="0 0 1"/>)").find("does not turn the camera up or down"),
             std::string::npos);
+}
+
+TEST(PanTiltUnit, AnAxisAlongTheLineOfSightIsRefused) {
+  // The tilt's limits have their middle 27 degrees below the horizon, so the pan axis x is 27 degrees from the view.
+  const std::string pan = errorOfUnit(kPanAxis, R"(<axis xyz="1 0 0"/>)");
+  EXPECT_NE(pan.find("the axis of joint 'pan_joint' lies along the line of sight (27 degrees from it), so the joint "
+                     "turns the image and not the camera left or right"),
+            std::string::npos)
+      << pan;
+  const std::string tilt = errorOfUnit(kTiltAxis, R"(<axis xyz="1 0.3 0"/>)");
+  EXPECT_NE(tilt.find("the axis of joint 'tilt_joint' lies along the line of sight (17 degrees"), std::string::npos)
+      << tilt;
+  EXPECT_EQ(parse(kPanAxis, R"(<axis xyz="0.5 0 1"/>)").pan.sign, 1) << "a unit that leans";
+}
+
+TEST(PanTiltUnit, LimitsInDegreesAreRefused) {
+  const std::string error = errorOfUnit(kPanLimit, R"(<limit lower="-150" upper="150" effort="1" velocity="1"/>)");
+  EXPECT_NE(error.find("joint 'pan_joint' has the limits [-150, 150] rad, more than two turns; if they are degrees, "
+                       "convert them to rad"),
+            std::string::npos)
+      << error;
+  EXPECT_NE(errorOfUnit(kPanLimit, R"(<limit lower="-30" upper="0" effort="1" velocity="1"/>)").find("degrees"),
+            std::string::npos);
+  EXPECT_DOUBLE_EQ(parse(kPanLimit, R"(<limit lower="-12.5" upper="12.5" effort="1" velocity="1"/>)").pan.upper_rad,
+                   12.5)
+      << "a unit that turns twice either way";
 }
 
 TEST(PanTiltUnit, AXacroFileSaysThatXacroHasToRunFirst) {

@@ -474,6 +474,32 @@ TEST_F(TexturedMeshTest, GltfStandsUprightInItsPlainColour) {
   EXPECT_LT((mesh.parts[0].vertices[0].normal + Eigen::Vector3f::UnitY()).norm(), 1e-6f) << "glTF's front is -y here";
 }
 
+/// A triangle from the origin to x = 1 and to (0, 2, 3). @param asset what it says about axes and units.
+std::string triangleCollada(const std::string& asset) {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
+         asset + R"(</asset><library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="pa" count="9">0 0 0 1 0 0 0 2 3</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST_F(TexturedMeshTest, ColladaFilesKeepTheirAxesAndHaveTheirUnitAsInRviz) {
+  // rviz leaves out the turn that assimp makes of up_axis.
+  for (const char* asset : {"", "<up_axis>X_UP</up_axis>", "<up_axis>Y_UP</up_axis>", "<up_axis>Z_UP</up_axis>"}) {
+    const TexturedMesh mesh = loadTexturedMesh(write("axes.dae", triangleCollada(asset)), kUnscaled, kManyTriangles);
+    EXPECT_TRUE(mesh.bounds().min().isApprox(Eigen::Vector3f(0, 0, 0))) << asset;
+    EXPECT_TRUE(mesh.bounds().max().isApprox(Eigen::Vector3f(1, 2, 3))) << asset;
+  }
+  const std::string inches = R"(<unit meter="0.0254" name="inch"/><up_axis>Y_UP</up_axis>)";
+  const TexturedMesh mesh = loadTexturedMesh(write("inches.dae", triangleCollada(inches)), kUnscaled, kManyTriangles);
+  EXPECT_TRUE(mesh.bounds().max().isApprox(0.0254f * Eigen::Vector3f(1, 2, 3)));
+}
+
 TEST_F(TexturedMeshTest, TwoSidedMaterialsHaveABack) {
   TexturedMesh mesh;
   EXPECT_EQ(notesOf(write("triangle.gltf", triangleGltf(R"({"doubleSided":true})")), &mesh), "");

@@ -18,8 +18,12 @@ namespace early_fusion::nodes {
 
 namespace {
 
-// A camera sends many images for each request. So many wait for a request with their stamp.
-constexpr int kImageQueue = 30;
+// A camera sends many images for each request. So many wait for a request with their stamp, if they fit.
+constexpr int kWaitingImages = 30;
+constexpr std::size_t kWaitingBytes = std::size_t{64} << 20;
+constexpr int kImageQueue = 6;  // images that come during a decision; a large one has tens of MB
+constexpr int kRequestQueue = 30;
+constexpr std::size_t kMaxCropWarnings = 20;
 
 }  // namespace
 
@@ -56,7 +60,7 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
       node_(context.node),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { report(status); }, context),
       watch_(context.node),
-      pairing_(kImageQueue),
+      pairing_(kWaitingImages, kWaitingBytes),
       annotation_(1 / options.annotated_rate_hz),
       image_transport_(node_),
       annotated_publisher_(image_transport_.advertise(kAnnotatedImageTopic, 2)),
@@ -72,12 +76,12 @@ PolicyNode::PolicyNode(const Options& options, const NodeContext& context)
   camera_info_subscriber_ = node_.subscribe<sensor_msgs::CameraInfo>(
       kCameraInfoTopic, 1, [this](const sensor_msgs::CameraInfoConstPtr& message) {
         camera_info_ = message;
-        watch_.heard(camera_info_subscriber_.getTopic());
+        watch_.heard(camera_info_subscriber_.getTopic(), camera_info_subscriber_.getNumPublishers());
       });
   const auto hints = ::ros::TransportHints().tcpNoDelay();
   request_subscriber_ = node_.subscribe<Request>(
-      kRequestTopic, kImageQueue, [this](const RequestConstPtr& request) { onRequest(request); }, ::ros::VoidConstPtr(),
-      hints);
+      kRequestTopic, kRequestQueue, [this](const RequestConstPtr& request) { onRequest(request); },
+      ::ros::VoidConstPtr(), hints);
   image_subscriber_ = image_transport_.subscribe(kImageTopic, kImageQueue, &PolicyNode::onImage, this,
                                                  image_transport::TransportHints(options_.image_transport, hints));
   if (policy_.loaded()) expectTopics();
@@ -94,10 +98,12 @@ void PolicyNode::expectTopics() {
 }
 
 void PolicyNode::onImage(const sensor_msgs::ImageConstPtr& image) {
-  watch_.heard(image_subscriber_.getTopic());
-  watch_.expect({"camera_info", camera_info_subscriber_.getTopic(), "sensor_msgs/CameraInfo",
-                 "remap camera/camera_info to the camera's (real_camera.launch: camera_info); until then the policy "
-                 "sees the largest square of the image"});
+  watch_.heard(image_subscriber_.getTopic(), image_subscriber_.getNumPublishers());
+  NeededTopic info{"camera_info", camera_info_subscriber_.getTopic(), "sensor_msgs/CameraInfo",
+                   "remap camera/camera_info to the camera's (real_camera.launch: camera_info); until then the policy "
+                   "sees the largest square of the image"};
+  info.one_publisher = true;
+  watch_.expect(info);
   if (const auto pair = pairing_.add(image)) answer(*pair->first, *pair->second);
 }
 
@@ -155,10 +161,9 @@ Crop PolicyNode::cropOf(const sensor_msgs::Image& image) {
   const bool rectified =
       options_.rectified == "auto" ? isRectifiedTopic(image_subscriber_.getTopic()) : options_.rectified == "true";
   Crop crop = cropToView(image, camera_info_.get(), rectified, policy_.horizontalFovDeg());
-  if (crop.warning != crop_warning_ && !crop.warning.empty()) {
+  if (!crop.warning.empty() && crop_warnings_.size() < kMaxCropWarnings && crop_warnings_.insert(crop.warning).second) {
     ROS_WARN("%s: %s", camera_info_subscriber_.getTopic().c_str(), crop.warning.c_str());
   }
-  crop_warning_ = crop.warning;
   return crop;
 }
 

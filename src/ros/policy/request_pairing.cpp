@@ -31,7 +31,14 @@ std::optional<RequestPairing::Pair> RequestPairing::add(const sensor_msgs::Image
     return Pair(image, request);
   }
   remember(images_, image, capacity_);
+  while (images_.size() > kMinImages && imageBytes() > max_bytes_) images_.pop_front();
   return std::nullopt;
+}
+
+std::size_t RequestPairing::imageBytes() const {
+  std::size_t bytes = 0;
+  for (const sensor_msgs::ImageConstPtr& image : images_) bytes += image->data.size();
+  return bytes;
 }
 
 std::optional<RequestPairing::Pair> RequestPairing::add(const RequestConstPtr& request) {

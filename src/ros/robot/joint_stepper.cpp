@@ -28,14 +28,17 @@ void JointStepper::assume(double angle_rad) {
   position_ = angle_rad;
 }
 
-bool JointStepper::observe(double angle_rad, const std::string& publisher, double now_sec) {
+bool JointStepper::observe(double angle_rad, const std::string& publisher, double at_sec) {
   if (!std::isfinite(angle_rad)) return false;
-  if (states_.count(publisher) == 0) {  // nodes that are restarted may have new names
+  const auto known = states_.find(publisher);
+  if (known == states_.end()) {  // nodes that are restarted may have new names
     for (auto state = states_.begin(); state != states_.end();) {
-      state = now_sec - state->second.at_sec > timeout_sec_ ? states_.erase(state) : std::next(state);
+      state = at_sec - state->second.at_sec > timeout_sec_ ? states_.erase(state) : std::next(state);
     }
+  } else if (at_sec < known->second.at_sec) {
+    return true;
   }
-  states_[publisher] = {angle_rad, now_sec};
+  states_[publisher] = {angle_rad, at_sec};
   return true;
 }
 

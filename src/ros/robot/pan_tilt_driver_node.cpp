@@ -3,11 +3,13 @@
 #include <std_msgs/Float64.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/file.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/ros/shared/stamps.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -82,6 +84,7 @@ PanTiltDriverNode::PanTiltDriverNode(const Options& options)
       kRequestTopic, 1, [this](const RequestConstPtr& request) { latest_request_ = request->header.stamp; });
   if (options_.use_joint_states) {
     joint_subscriber_ = node_.subscribe(kJointStatesTopic, kJointStateQueue, &PanTiltDriverNode::onJointStates, this);
+    watch_.expect(neededJointStates(joint_subscriber_.getTopic()));
   } else {
     moveToTheMiddle();
   }
@@ -95,15 +98,30 @@ void PanTiltDriverNode::moveToTheMiddle() {
 
 void PanTiltDriverNode::onJointStates(const ::ros::MessageEvent<const sensor_msgs::JointState>& event) {
   const sensor_msgs::JointState& states = *event.getConstMessage();
+  const std::string publisher = event.getPublisherName();
+  watch_.heard(joint_subscriber_.getTopic());
+  const double at_sec = madeAt(states.header.stamp, INFINITY).toSec();
   for (std::size_t i = 0; i < states.name.size() && i < states.position.size(); ++i) {
     if (joint_names_.size() < kShownJointNames) joint_names_.insert(states.name[i]);
     for (JointStepper* joint : {&stepper_.pan(), &stepper_.tilt()}) {
       if (states.name[i] != joint->joint().name) continue;
-      if (joint->observe(states.position[i], event.getPublisherName(), nowSec())) continue;
+      noteAge(states.name[i], publisher, states.header.stamp, at_sec);
+      if (joint->observe(states.position[i], publisher, at_sec)) continue;
       health_.drop("unusable joint state",
-                   "the position of '" + states.name[i] + "' from " + event.getPublisherName() + " is not finite");
+                   "the position of '" + states.name[i] + "' from " + publisher + " is not finite");
     }
   }
+}
+
+/// Says so if a joint state is too old to be moved from when it comes.
+void PanTiltDriverNode::noteAge(const std::string& joint, const std::string& publisher, const ::ros::Time& stamp,
+                                double at_sec) {
+  const double age_sec = nowSec() - at_sec;
+  if (age_sec <= options_.joint_state_timeout_sec) return;
+  std::ostringstream detail;
+  detail << "that of '" << joint << "' from " << publisher << " is " << age_sec
+         << " s old when it comes (joint_state_timeout)" << clockHint("the joint states", stamp, ::ros::Time::now());
+  health_.drop("late joint state", detail.str());
 }
 
 void PanTiltDriverNode::onAction(const Action& message) {

@@ -4,6 +4,8 @@
 
 #include "early_fusion/core/action.h"
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
+#include "early_fusion/ros/shared/topic_watch.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -50,50 +52,66 @@ core::OptionSet Picker::Options::options() {
                 "who takes away what is found: the robot's action server 'pick', or nobody; then it is announced on "
                 "'found' and counts as collected");
   set.add("pick_timeout", pick_timeout_sec, 0.1, 3600, "s", "a pick that takes longer is cancelled and has failed");
-  set.add("tf_timeout", tf_timeout_sec, 0.1, 60, "s",
-          "a pick whose transform or depth image has not come for this long has failed");
+  set.add(
+      "tf_timeout", tf_timeout_sec, 0.1, 60, "s",
+      "how long to wait for the transform and the depth image of a pick; without them it is not tried, and the next "
+      "image is asked about");
   return set;
 }
 
 Picker::Picker(const Options& options, const CameraLocator& locator)
     : options_(options),
       locator_(locator),
+      server_name_(node_.resolveName(kPickAction)),
       found_publisher_(node_.advertise<Found>(kFoundTopic, 10)),
       markers_publisher_(node_.advertise<visualization_msgs::MarkerArray>(kFoundMarkersTopic, 1, true)) {
   if (options_.pick == "server") client_ = std::make_unique<Client>(node_, kPickAction, false);
   timer_ = node_.createWallTimer(::ros::WallDuration(kTimerSec), [this](const ::ros::WallTimerEvent&) { onTimer(); });
 }
 
-std::string Picker::obstacle() const {
+std::string Picker::obstacle() {
+  if (state_ == State::kCancelling) {
+    return "the pick server " + server_name_ + " has not ended the goal that was cancelled; restart it if it hangs";
+  }
   if (!client_ || client_->isServerConnected()) return "";
-  return "there is no action server " + node_.resolveName(kPickAction) +
-         " (early_fusion/Pick); start the robot's, or set pick:=none";
+  if (servers_asked_.due()) {
+    const std::vector<std::string> others = actionServers("early_fusion/PickActionGoal", subscribedByOthers());
+    servers_ = others.empty() ? "; there is no other one of its type"
+                              : "; these have its type: " + core::joined(others) + "; set pick_server";
+  }
+  return "there is no action server " + server_name_ + " (early_fusion/Pick)" + servers_ +
+         "; start the robot's, or set pick:=none";
 }
 
 void Picker::pick(const Found& found, Done done) {
   found_ = found;
   done_ = std::move(done);
-  located_ = false;
+  state_ = State::kLocating;
   deadline_ = ::ros::WallTime::now() + ::ros::WallDuration(options_.tf_timeout_sec);
 }
 
 void Picker::cancel() {
-  if (located_) {
-    client_->cancelGoal();
-    client_->stopTrackingGoal();
-  }
-  located_ = false;
   done_ = nullptr;
+  if (state_ == State::kPicking) {
+    client_->cancelGoal();
+    state_ = State::kCancelling;
+  } else if (state_ == State::kLocating) {
+    state_ = State::kIdle;
+  }
 }
 
 void Picker::onTimer() {
-  if (!busy()) return;
-  if (!located_) return tryToLocate();
-  const bool connected = client_->isServerConnected();
-  if (connected && ::ros::WallTime::now() < deadline_) return;
-  const Done done = std::move(done_);
-  cancel();
-  done(false, connected ? "the pick server did not finish within ~pick_timeout" : "the pick server has gone away");
+  if (state_ == State::kIdle) return;
+  if (state_ == State::kLocating) return tryToLocate();
+  if (!client_->isServerConnected()) {
+    client_->stopTrackingGoal();
+    if (busy()) return finish(Outcome::kFailed, "the pick server has gone away");
+    state_ = State::kIdle;
+  } else if (busy() && ::ros::WallTime::now() > deadline_) {
+    const Done done = std::move(done_);
+    cancel();
+    done(Outcome::kFailed, "the pick server did not finish within ~pick_timeout");
+  }
 }
 
 void Picker::tryToLocate() {
@@ -105,13 +123,14 @@ void Picker::tryToLocate() {
       if (!pose) throw core::Error("its position is not known: " + missing);
       found_.pose = *pose;
     } catch (const std::exception& error) {  // core::Error, or tf2's
-      return finish(false, error.what());
+      return finish(Outcome::kNotTried, error.what());
     }
   }
   announce();
   if (client_) return sendGoal();
   const bool collects = found_.action == core::actionName(core::Action::kCollect);
-  finish(collects, collects ? "" : "with pick:=none nobody removes what is in the way");
+  finish(collects ? Outcome::kSucceeded : Outcome::kFailed,
+         collects ? "" : "with pick:=none nobody removes what is in the way");
 }
 
 void Picker::announce() {
@@ -125,7 +144,7 @@ void Picker::sendGoal() {
   goal.item = found_.item;
   goal.item_probability = found_.item_probability;
   goal.pose = found_.pose;
-  located_ = true;
+  state_ = State::kPicking;
   deadline_ = ::ros::WallTime::now() + ::ros::WallDuration(options_.pick_timeout_sec);
   client_->sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state, const PickResultConstPtr& result) {
     onResult(state, result);
@@ -133,19 +152,25 @@ void Picker::sendGoal() {
 }
 
 void Picker::onResult(const actionlib::SimpleClientGoalState& state, const PickResultConstPtr& result) {
-  if (!busy()) return;
   const bool succeeded = state == actionlib::SimpleClientGoalState::SUCCEEDED;
+  const bool success = succeeded && result && result->success;
+  if (state_ == State::kCancelling) {
+    state_ = State::kIdle;
+    ROS_INFO("the cancelled %s of %s has ended: %s", found_.action.c_str(), found_.item.c_str(),
+             success ? "it succeeded nevertheless, but does not count" : state.toString().c_str());
+  }
+  if (!busy()) return;
   std::string message = result ? result->message : "";
   if (message.empty()) message = state.getText();
   if (!succeeded) message = "the pick server's goal ended as " + state.toString() + ": " + message;
-  finish(succeeded && result && result->success, message);
+  finish(success ? Outcome::kSucceeded : Outcome::kFailed, message);
 }
 
-void Picker::finish(bool success, const std::string& message) {
+void Picker::finish(Outcome outcome, const std::string& message) {
   const Done done = std::move(done_);
-  located_ = false;
+  state_ = State::kIdle;
   done_ = nullptr;
-  done(success, message);
+  done(outcome, message);
 }
 
 }  // namespace early_fusion::nodes

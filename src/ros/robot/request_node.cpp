@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "early_fusion/core/action.h"
+#include "early_fusion/core/error.h"
 #include "early_fusion/core/excerpt.h"
 #include "early_fusion/core/names.h"
 #include "early_fusion/ros/shared/conversions.h"
+#include "early_fusion/ros/shared/stamps.h"
 #include "early_fusion/ros/shared/topics.h"
 
 namespace early_fusion::nodes {
@@ -14,13 +16,7 @@ namespace {
 
 constexpr double kMaxImageAgeSec = 5;  // an older image has the stamp of another clock
 constexpr double kPatienceSec = 3;     // before a warning says why no image is asked about
-
-/// When an image was taken. Its stamp counts only if its clock is this machine's.
-::ros::WallTime takenAt(const std_msgs::Header& header) {
-  const double age_sec = (::ros::Time::now() - header.stamp).toSec();
-  const ::ros::WallTime now = ::ros::WallTime::now();
-  return age_sec > 0 && age_sec < kMaxImageAgeSec ? now - ::ros::WallDuration(age_sec) : now;
-}
+constexpr double kStillComesSec = 1;   // images that came later than this ago go on coming
 
 }  // namespace
 
@@ -47,8 +43,8 @@ RequestNode::RequestNode(const Options& options)
         status.add("requests", itemList(list_.items()));
       }),
       list_(core::splitNames(options.items), options.max_failures),
-      locator_(options.position),
-      motion_(options.motion, locator_),
+      locator_(options.position, watch_),
+      motion_(options.motion, locator_, watch_),
       picker_(options.pick, locator_),
       ready_at_(::ros::WallTime::now()),
       request_publisher_(node_.advertise<Request>(kRequestTopic, 10)),
@@ -56,6 +52,8 @@ RequestNode::RequestNode(const Options& options)
   set_request_server_ = node_.advertiseService(kSetRequestService, &RequestNode::onSetRequest, this);
   action_subscriber_ =
       node_.subscribe<Action>(kActionTopic, 10, [this](const ActionConstPtr& action) { onAction(*action); });
+  status_subscriber_ = node_.subscribe<PolicyStatus>(
+      kPolicyStatusTopic, 2, [this](const PolicyStatusConstPtr& status) { onPolicyStatus(*status); });
   image_subscriber_ = image_transport_.subscribe(kImageTopic, 1, &RequestNode::onImage, this,
                                                  image_transport::TransportHints(options_.image_transport));
   NeededTopic images = neededImage(image_subscriber_.getTopic(), options_.image_transport,
@@ -64,9 +62,14 @@ RequestNode::RequestNode(const Options& options)
   watch_.expect(images);
 }
 
-void RequestNode::noteStamp(const ::ros::Time& stamp) {
+/// @return false if the image comes from a second publisher whose stamps are older. TopicWatch names both.
+bool RequestNode::noteStamp(const ::ros::Time& stamp) {
+  const ::ros::WallTime now = ::ros::WallTime::now();
   if (stamp < latest_image_) {
-    ROS_INFO("the images' time has jumped back by %.3f s: a new episode begins", (latest_image_ - stamp).toSec());
+    const bool goes_on = (now - latest_image_came_at_).toSec() < kStillComesSec;
+    if (goes_on && image_subscriber_.getNumPublishers() > 1) return false;
+    const double back_sec = (latest_image_ - stamp).toSec();
+    if (time_jumps_.due()) ROS_INFO("the images' time has jumped back by %.3f s: a new episode begins", back_sec);
     step_ = 0;
     waiting_ = false;
     locator_.forget();
@@ -79,12 +82,14 @@ void RequestNode::noteStamp(const ::ros::Time& stamp) {
         stamp.toSec());
   }
   latest_image_ = stamp;
+  latest_image_came_at_ = now;
+  return true;
 }
 
 void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   health_.count("images");
-  watch_.heard(image_subscriber_.getTopic());
-  noteStamp(image->header.stamp);
+  watch_.heard(image_subscriber_.getTopic(), image_subscriber_.getNumPublishers());
+  if (!noteStamp(image->header.stamp)) return health_.count("older images of another publisher");
   if (!mayAsk(*image)) return;
   if (waiting_)
     health_.drop("unanswered request", "no action for step " + std::to_string(step_) +
@@ -102,16 +107,18 @@ void RequestNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 }
 
 bool RequestNode::mayAsk(const sensor_msgs::Image& image) {
-  const ::ros::WallTime now = ::ros::WallTime::now(), taken_at = takenAt(image.header);
-  const double since_sec = (now - asked_at_).toSec(), settled_sec = (now - std::max(asked_at_, answered_at_)).toSec();
-  const bool too_early = settled_sec < 1 / options_.rate_hz || taken_at < answered_at_;
+  const ::ros::WallTime now = ::ros::WallTime::now(), taken_at = madeAt(image.header.stamp, kMaxImageAgeSec);
+  const ::ros::WallTime moves_from = std::max(asked_at_, answered_at_) + ::ros::WallDuration(1 / options_.rate_hz);
+  const double since_sec = (now - asked_at_).toSec();
+  const bool too_early = now < moves_from || taken_at < answered_at_;
   if (too_early || picker_.busy() || list_.items().empty() || (waiting_ && since_sec < options_.answer_timeout_sec)) {
     ready_at_ = now;
     return false;
   }
-  std::string obstacle = picker_.obstacle();
+  std::string obstacle = unknownItem(list_.items());
+  if (obstacle.empty()) obstacle = picker_.obstacle();
   if (obstacle.empty()) obstacle = locator_.obstacle(image.header.frame_id);
-  if (obstacle.empty()) obstacle = motion_.obstacle(image.header.frame_id, taken_at);
+  if (obstacle.empty()) obstacle = motion_.obstacle(image.header.frame_id, taken_at, moves_from);
   if (obstacle.empty()) {
     ready_at_ = now;
   } else if ((now - ready_at_).toSec() > kPatienceSec) {
@@ -143,12 +150,17 @@ void RequestNode::pick(const Action& action) {
                                                     core::excerpt(action.item) +
                                                     "', which is not requested; set ~name_items of policy_node");
   }
-  picker_.pick(found, [this, found](bool success, const std::string& message) { onPicked(found, success, message); });
+  picker_.pick(
+      found, [this, found](Picker::Outcome outcome, const std::string& message) { onPicked(found, outcome, message); });
 }
 
-void RequestNode::onPicked(const Found& found, bool success, const std::string& message) {
+void RequestNode::onPicked(const Found& found, Picker::Outcome outcome, const std::string& message) {
   answered_at_ = ::ros::WallTime::now();
-  if (!success) return reportFailure(found, message);
+  if (outcome == Picker::Outcome::kNotTried) {
+    return health_.drop("pick without a position",
+                        found.action + " of " + found.item + " is not tried, and counts as no failure: " + message);
+  }
+  if (outcome == Picker::Outcome::kFailed) return reportFailure(found, message);
   health_.count("successful picks");
   if (found.action == core::actionName(core::Action::kRemove)) {
     list_.uncovered(found.item);
@@ -173,14 +185,40 @@ bool RequestNode::onSetRequest(SetRequest::Request& request, SetRequest::Respons
     response.message = "an item has no name; the request stays " + itemList(list_.items());
     return true;
   }
+  const std::string unknown = unknownItem(request.items);
+  if (!unknown.empty()) {
+    response.success = false;
+    response.message = unknown + "; the request stays " + itemList(list_.items());
+    return true;
+  }
+  response.message =
+      "requesting " + itemList(request.items) + (picker_.busy() ? "; the current pick is cancelled" : "");
   picker_.cancel();
   list_ = RequestList(request.items, options_.max_failures);
   step_ = 0;
   waiting_ = false;
   answered_at_ = ::ros::WallTime::now();
   response.success = true;
-  response.message = "requesting " + itemList(list_.items());
   return true;
+}
+
+void RequestNode::onPolicyStatus(const PolicyStatus& status) {
+  try {
+    vocabulary_ = core::Vocabulary(status.vocabulary);
+  } catch (const core::Error& error) {
+    health_.drop("unusable policy status", error.what());
+  }
+}
+
+/// Why the policy cannot know the items; empty if it knows them, or has not said what it knows.
+std::string RequestNode::unknownItem(const std::vector<std::string>& items) const {
+  if (vocabulary_.size() == 0) return "";
+  try {
+    vocabulary_.request(items);
+    return "";
+  } catch (const core::Error& error) {
+    return std::string("the policy's weights do not know what is requested: ") + error.what();
+  }
 }
 
 }  // namespace early_fusion::nodes

@@ -20,6 +20,8 @@ namespace encodings = sensor_msgs::image_encodings;
 constexpr int kWindow = 5;  // px
 constexpr double kMaxDistanceM = 100;
 
+bool isInMetres(const sensor_msgs::Image& depth) { return depth.encoding == encodings::TYPE_32FC1; }
+
 template <class Value>
 Value valueAt(const sensor_msgs::Image& image, int row, int column) {
   Value value;
@@ -39,8 +41,8 @@ double distanceToPlane(const Eigen::Isometry3d& frame_from_camera, double height
                     " degrees downwards; check ~surface_height and the camera's frame");
 }
 
-double centreDepth(const sensor_msgs::Image& depth) {
-  const bool metres = depth.encoding == encodings::TYPE_32FC1;
+void checkDepthImage(const sensor_msgs::Image& depth) {
+  const bool metres = isInMetres(depth);
   const std::size_t pixel_size = metres ? sizeof(float) : sizeof(std::uint16_t);
   if (!metres && depth.encoding != encodings::TYPE_16UC1 && depth.encoding != encodings::MONO16) {
     throw core::Error("the depth image has the encoding '" + core::excerpt(depth.encoding) +
@@ -51,6 +53,12 @@ double centreDepth(const sensor_msgs::Image& depth) {
       depth.data.size() < static_cast<std::size_t>(depth.step) * rows) {
     throw core::Error("the depth image is smaller than 5 x 5 pixels, big-endian, or has too few bytes");
   }
+}
+
+double centreDepth(const sensor_msgs::Image& depth) {
+  checkDepthImage(depth);
+  const bool metres = isInMetres(depth);
+  const int rows = static_cast<int>(depth.height), columns = static_cast<int>(depth.width);
   std::vector<double> depths;
   for (int row = rows / 2 - kWindow / 2; row <= rows / 2 + kWindow / 2; ++row) {
     for (int column = columns / 2 - kWindow / 2; column <= columns / 2 + kWindow / 2; ++column) {

@@ -8,6 +8,7 @@
 #include <image_transport/image_transport.h>
 #include <ros/node_handle.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,7 @@ class PolicyNode {
   std::vector<std::string> answered_items_;
   bool answer_valid_ = false;  // whether answer_ was decided by the current weights
   sensor_msgs::CameraInfoConstPtr camera_info_;
-  std::string crop_warning_;  // of the last image
+  std::set<std::string> crop_warnings_;  // that were said
   WallThrottle annotation_;
   double latency_sec_ = 0;  // of the last decision
 

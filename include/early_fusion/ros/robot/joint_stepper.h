@@ -26,9 +26,10 @@ class JointStepper {
   /// A joint without feedback: it stands where its last command was.
   void assume(double angle_rad);
 
-  /// A joint state. @param publisher its node: those of several nodes must agree.
+  /// A joint state. One that is older than the publisher's newest is ignored.
+  /// @param publisher its node: those of several nodes must agree. @param at_sec when it was measured.
   /// @return whether it is finite. Others are ignored.
-  bool observe(double angle_rad, const std::string& publisher, double now_sec);
+  bool observe(double angle_rad, const std::string& publisher, double at_sec);
 
   /// Why the joint must not be moved now; empty where it may.
   std::string obstacle(double now_sec) const;

@@ -12,6 +12,7 @@
 #include "early_fusion/core/options.h"
 #include "early_fusion/ros/robot/pan_tilt_stepper.h"
 #include "early_fusion/ros/shared/health.h"
+#include "early_fusion/ros/shared/topic_watch.h"
 
 namespace early_fusion::nodes {
 
@@ -41,6 +42,7 @@ class PanTiltDriverNode {
  private:
   void onAction(const Action& message);
   void onJointStates(const ::ros::MessageEvent<const sensor_msgs::JointState>& event);
+  void noteAge(const std::string& joint, const std::string& publisher, const ::ros::Time& stamp, double at_sec);
   void move(core::Action action);
   void moveToTheMiddle();
   void command(bool pans, bool tilts);
@@ -50,6 +52,7 @@ class PanTiltDriverNode {
   ::ros::NodeHandle node_;
   PanTiltStepper stepper_;
   Health health_;
+  TopicWatch watch_;
   std::set<std::string> joint_names_;  // in the joint states; the first few
   ::ros::Time latest_request_;         // the stamp of its image
   ::ros::Publisher pan_publisher_;

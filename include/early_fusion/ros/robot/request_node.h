@@ -1,6 +1,7 @@
 #pragma once
 
 #include <early_fusion/Action.h>
+#include <early_fusion/PolicyStatus.h>
 #include <early_fusion/Request.h>
 #include <early_fusion/SetRequest.h>
 #include <image_transport/image_transport.h>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "early_fusion/core/options.h"
+#include "early_fusion/core/vocabulary.h"
 #include "early_fusion/ros/robot/camera_locator.h"
 #include "early_fusion/ros/robot/motion_watch.h"
 #include "early_fusion/ros/robot/picker.h"
@@ -44,12 +46,14 @@ class RequestNode {
 
  private:
   void onImage(const sensor_msgs::ImageConstPtr& image);
-  void noteStamp(const ::ros::Time& stamp);
+  bool noteStamp(const ::ros::Time& stamp);
   bool mayAsk(const sensor_msgs::Image& image);
   void onAction(const Action& action);
   void pick(const Action& action);
-  void onPicked(const Found& found, bool success, const std::string& message);
+  void onPicked(const Found& found, Picker::Outcome outcome, const std::string& message);
   void reportFailure(const Found& found, const std::string& message);
+  void onPolicyStatus(const PolicyStatus& status);
+  std::string unknownItem(const std::vector<std::string>& items) const;
   bool onSetRequest(SetRequest::Request& request, SetRequest::Response& response);
 
   Options options_;
@@ -60,8 +64,11 @@ class RequestNode {
   CameraLocator locator_;
   MotionWatch motion_;
   Picker picker_;
+  core::Vocabulary vocabulary_;  // the policy's; empty: not known
   std::uint32_t step_ = 0;
   ::ros::Time latest_image_;
+  ::ros::WallTime latest_image_came_at_;
+  WallThrottle time_jumps_{5};       // seconds between two notes
   bool stamps_stand_still_ = false;  // those of the last two images are equal
   bool waiting_ = false;             // for the action that answers asked_
   Request asked_;
@@ -70,7 +77,7 @@ class RequestNode {
   ::ros::WallTime ready_at_;     // when an image could be asked about most recently
 
   ::ros::Publisher request_publisher_;
-  ::ros::Subscriber action_subscriber_;
+  ::ros::Subscriber action_subscriber_, status_subscriber_;
   ::ros::ServiceServer set_request_server_;
   image_transport::ImageTransport image_transport_;
   image_transport::Subscriber image_subscriber_;

@@ -11,8 +11,11 @@ namespace early_fusion::nodes {
 /// @throws core::Error if the axis does not meet the plane in front of the camera.
 double distanceToPlane(const Eigen::Isometry3d& frame_from_camera, double height_m);
 
+/// @throws core::Error if an image is no depth image, 32FC1 [m] or 16UC1 [mm] (REP-118), or is empty.
+void checkDepthImage(const sensor_msgs::Image& depth);
+
 /// The depth [m] at an image's centre: the median of what is known within 5 x 5 pixels.
-/// @param depth 32FC1 [m] or 16UC1 [mm] (REP-118). @throws core::Error naming what is wrong with it.
+/// @throws core::Error as checkDepthImage(), or if no depth is known there.
 double centreDepth(const sensor_msgs::Image& depth);
 
 /// The point on the optical axis at a distance [m], with x along the axis and z upwards in the image.
