@@ -1,0 +1,111 @@
+#include "early_fusion/sim/tracked_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "early_fusion/core/error.h"
+
+namespace early_fusion::sim {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000000;
+
+core::Vocabulary items() { return core::Vocabulary({"can", "mug"}); }
+
+TrackedScene twoMugsAndACan() { return {{{"tag_1", "mug"}, {"tag_2", "can"}, {"tag_3", "mug"}}, items(), 2}; }
+
+Eigen::Isometry3d poseAt(double x, double y, double theta) {
+  return Eigen::Translation3d(x, y, 0.9) * Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ());
+}
+
+std::string errorOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const core::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TrackedScene, PutsEachFramesItemWhereItWasSeen) {
+  TrackedScene scene = twoMugsAndACan();
+  scene.see(0, kSecond, poseAt(0.5, -0.25, 0));
+  scene.see(2, kSecond, poseAt(0.75, 0.125, 0.5));
+  EXPECT_EQ(scene.instances()[0], (Instance{1, 0.5, -0.25, 0}));
+  EXPECT_EQ(scene.instances()[1], (Instance{0, 0, 0, 0}));
+  EXPECT_EQ(scene.instances()[2].item, 1);
+  EXPECT_EQ(scene.instances()[2].x, 0.75);
+  EXPECT_NEAR(scene.instances()[2].theta, 0.5, 1e-12);
+  EXPECT_EQ(scene.present(kSecond), 0b101u);
+}
+
+TEST(TrackedScene, AppliesTheTagsPlaceOnTheObjectInTheTagsAxes) {
+  TrackedObject mug{"tag_1", "mug"};
+  mug.frame_from_object.translation() = Eigen::Vector3d(0.25, 0, 0);
+  TrackedScene scene({mug}, items(), 2);
+  scene.see(0, kSecond, poseAt(1, 2, std::acos(-1.0) / 2));
+  EXPECT_NEAR(scene.instances()[0].x, 1, 1e-12);
+  EXPECT_NEAR(scene.instances()[0].y, 2.25, 1e-12);
+}
+
+TEST(TrackedScene, HoldsAnObjectThroughADropoutAndThenLeavesItOut) {
+  TrackedScene scene = twoMugsAndACan();
+  scene.see(1, kSecond, poseAt(0.5, 0, 0));
+  EXPECT_EQ(scene.present(3 * kSecond), 0b010u);
+  EXPECT_EQ(scene.present(3 * kSecond + 1), 0u);
+  scene.see(1, 4 * kSecond, poseAt(0.5, 0, 0));
+  EXPECT_EQ(scene.present(4 * kSecond), 0b010u);
+}
+
+TEST(TrackedScene, IgnoresASightingOlderThanTheLast) {
+  TrackedScene scene = twoMugsAndACan();
+  scene.see(0, 2 * kSecond, poseAt(0.5, 0, 0));
+  scene.see(0, kSecond, poseAt(0.75, 0, 0));
+  EXPECT_EQ(scene.instances()[0].x, 0.5);
+}
+
+TEST(TrackedScene, NeedsWhatWasTakenToBeSeenAgainBeforeTheNextEpisode) {
+  TrackedScene scene = twoMugsAndACan();
+  for (int i = 0; i < 3; ++i) scene.see(i, kSecond, poseAt(0.5, 0, 0));
+  scene.take(2, kSecond);
+  EXPECT_EQ(scene.present(kSecond), 0b011u);
+  EXPECT_EQ(scene.taken(), std::vector<std::string>{"mug (tag_3)"});
+  EXPECT_EQ(errorOf([&] { scene.beginEpisode(2 * kSecond); }), "not seen on the counter: mug (tag_3); put them back");
+  scene.see(2, 2 * kSecond, poseAt(0.5, 0, 0));
+  EXPECT_EQ(scene.present(2 * kSecond), 0b011u);
+  scene.beginEpisode(2 * kSecond);
+  EXPECT_EQ(scene.present(2 * kSecond), 0b111u);
+  EXPECT_TRUE(scene.taken().empty());
+}
+
+TEST(TrackedScene, NamesABadFrameItemOrHold) {
+  const auto make = [](std::vector<TrackedObject> objects, double hold_sec) {
+    return errorOf([&] { TrackedScene(objects, items(), hold_sec); });
+  };
+  EXPECT_NE(make({{"a", "mug"}, {"a", "can"}}, 1).find("frame: 'a' is listed twice"), std::string::npos);
+  EXPECT_NE(make({{"a", "bowl"}}, 1).find("bowl"), std::string::npos);
+  EXPECT_NE(make({{"", "mug"}}, 1).find("frame: is empty"), std::string::npos);
+  EXPECT_NE(make({{"a", "mug"}}, -1).find("hold_sec: -1"), std::string::npos);
+  EXPECT_NE(make({}, 1).find("objects: 0"), std::string::npos);
+}
+
+TEST(TrackedScene, NamesTheFrameOfAPoseThatIsNotFinite) {
+  TrackedScene scene = twoMugsAndACan();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(errorOf([&] { scene.see(1, kSecond, poseAt(nan, 0, 0)); }), "the pose of frame 'tag_2' is not finite");
+}
+
+TEST(NearestOrientation, RoundsToWholeStepsWithinTheLimits) {
+  const world::OrientationLattice lattice{{-10, -5}, {10, 5}};
+  EXPECT_EQ(nearestOrientation(lattice, 3.4 * world::kStepRad, -1.6 * world::kStepRad), (world::Orientation{3, -2}));
+  EXPECT_THROW(nearestOrientation(lattice, 10.6 * world::kStepRad, 0), core::Error);
+  EXPECT_THROW(nearestOrientation(lattice, std::numeric_limits<double>::quiet_NaN(), 0), core::Error);
+}
+
+}  // namespace
+}  // namespace early_fusion::sim
