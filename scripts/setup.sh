@@ -26,9 +26,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 libraries=(cmake g++ make pkg-config libassimp-dev libbullet-dev libdnnl-dev libeigen3-dev
   libmeshoptimizer-dev libopencv-dev libstb-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev)
 debian_ros=(catkin libactionlib-dev libdiagnostic-updater-dev libimage-transport-dev
-  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librosbag-storage-dev librostest-dev
+  libmessage-filters-dev libnodeletlib-dev libroscpp-dev librosbag-dev librosbag-storage-dev librostest-dev libstd-srvs-dev
   libtf2-dev libtf2-msgs-dev libtf2-ros-dev libtrajectory-msgs-dev libvisualization-msgs-dev
-  python3-actionlib python3-diagnostic-msgs python3-rosbag python3-sensor-msgs ros-actionlib-msgs ros-core
+  python3-actionlib python3-diagnostic-msgs python3-rosbag python3-sensor-msgs python3-std-srvs ros-actionlib-msgs ros-core
   ros-diagnostic-msgs ros-geometry-msgs ros-message-generation ros-robot-state-publisher ros-sensor-msgs ros-std-msgs
   ros-trajectory-msgs ros-visualization-msgs rosbash)
 for_tests=(libbenchmark-dev libgtest-dev python3-matplotlib python3-pil python3-rostest)

@@ -27,7 +27,7 @@ std::optional<Action> reverseOf(Action action) {
 /// Whether the press at `at` takes back the policy's move of step `move`.
 bool undoes(const std::vector<WatchedStep>& steps, std::size_t at, std::size_t move) {
   const WatchedStep &before = steps[move], &after = steps[move + 1];
-  return !before.persons && steps[at].persons && steps[at].persons == reverseOf(before.policys) &&
+  return !before.persons && !before.confirmed && steps[at].persons && steps[at].persons == reverseOf(before.policys) &&
          before.request == steps[at].request && *before.frame != *after.frame;
 }
 
@@ -53,6 +53,7 @@ expert::ActionSet harmfulIn(const WatchedStep& step, Action label) {
 std::vector<ShownStep> shownBy(const std::vector<WatchedStep>& steps) {
   std::vector<ShownStep> shown(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].confirmed) shown[i].label = steps[i].policys;
     if (!steps[i].persons) continue;
     shown[i].label = steps[i].persons;
     if (i > 0 && !steps[i - 1].persons) labelUndone(steps, i, shown);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <sstream>
 
@@ -76,24 +77,44 @@ std::vector<Instance> placeAll(const world::World& world, const std::vector<int>
   return placed;
 }
 
-std::vector<Instance> sampleInstances(const world::World& world, const Task& task, core::Random& random) {
-  const int more = task.maxInstances() - task.instances;
-  const int count = task.instances + (more > 0 ? random.below(more + 1) : 0);
-  std::size_t most = 0;
+/// @param draw_items the items of a try.
+std::vector<Instance> placeDrawn(const world::World& world, const std::string& task, core::Random& random,
+                                 const std::function<std::vector<int>()>& draw_items) {
+  std::size_t most = 0, count = 0;
   for (int i = 0; i < kTriesPerScene; ++i) {
-    std::vector<int> items(count);
-    for (int& item : items) item = random.below(world.objects.size());
+    const std::vector<int> items = draw_items();
     std::vector<Instance> placed = placeAll(world, items, random);
     if (placed.size() == items.size()) return placed;
     most = std::max(most, placed.size());
+    count = items.size();
   }
   std::ostringstream text;
   text << "only " << most << " of " << count << " objects fit on the " << world.options.placement_width << " x "
        << world.options.placement_depth << " m of the counter, " << world.options.clearance
-       << " m apart; reduce instances of task '" << task.name
+       << " m apart; reduce instances of task '" << task
        << "', max_instances in training or the world's clearance, or increase placement_width, placement_depth or "
           "max_overhang; the kitchen's collision shapes need space, too";
   throw core::Error(text.str());
+}
+
+std::vector<Instance> sampleInstances(const world::World& world, const Task& task, core::Random& random) {
+  const int more = task.maxInstances() - task.instances;
+  const int count = task.instances + (more > 0 ? random.below(more + 1) : 0);
+  return placeDrawn(world, task.name, random, [&] {
+    std::vector<int> items(count);
+    for (int& item : items) item = random.below(world.objects.size());
+    return items;
+  });
+}
+
+/// `count` of the instances' items, drawn.
+core::Request drawItems(const std::vector<Instance>& instances, int count, core::Random& random,
+                        std::vector<int>& order) {
+  random.shuffle(order);
+  core::Request request;
+  for (int k = 0; k < count; ++k) request.push_back(instances[order[k]].item);
+  std::sort(request.begin(), request.end());
+  return request;
 }
 
 /// Draws a random subset of the instances as the request. @return false if no allowed one was found.
@@ -101,10 +122,7 @@ bool drawRequest(const Task& task, const HeldOutPairs& held_out, core::Random& r
   std::vector<int> order(setup.instances.size());
   std::iota(order.begin(), order.end(), 0);
   for (int i = 0; i < kTriesPerRequest; ++i) {
-    random.shuffle(order);
-    setup.request.clear();
-    for (int k = 0; k < task.requested; ++k) setup.request.push_back(setup.instances[order[k]].item);
-    std::sort(setup.request.begin(), setup.request.end());
+    setup.request = drawItems(setup.instances, task.requested, random, order);
     if (held_out.allow(task.pairs, setup.request)) return true;
   }
   return false;
@@ -140,6 +158,18 @@ EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Ra
                       " instances is one of the '" + pairChoiceName(task.pairs) + "' pairs in " +
                       std::to_string(kTriesPerScene) + " scenes; change held_out_pairs or request fewer instances");
   }
+  const world::OrientationLattice& lattice = world.rig.lattice();
+  setup.orientation = lattice.at(random.below(lattice.size()));
+  return setup;
+}
+
+EpisodeSetup sampleEpisodeOf(const world::World& world, const std::vector<int>& items, int requested,
+                             core::Random& random) {
+  EpisodeSetup setup;
+  setup.instances = placeDrawn(world, "of given objects", random, [&] { return items; });
+  std::vector<int> order(items.size());
+  std::iota(order.begin(), order.end(), 0);
+  setup.request = drawItems(setup.instances, std::min<int>(requested, items.size()), random, order);
   const world::OrientationLattice& lattice = world.rig.lattice();
   setup.orientation = lattice.at(random.below(lattice.size()));
   return setup;

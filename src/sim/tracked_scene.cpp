@@ -1,18 +1,24 @@
 #include "early_fusion/sim/tracked_scene.h"
 
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
 #include "early_fusion/core/error.h"
 #include "early_fusion/core/names.h"
+#include "early_fusion/core/options.h"
 #include "early_fusion/sim/task.h"
+#include "early_fusion/world/yaml_entries.h"
 
 namespace early_fusion::sim {
 
 namespace {
 
 constexpr double kMostHoldSec = 3600;
+constexpr double kMostAngleDeg = 3, kMostDistanceM = 0.05;  // of a camera from the rig's
 
 std::int64_t holdNs(double hold_sec) {
   if (!(hold_sec >= 0 && hold_sec <= kMostHoldSec)) {
@@ -37,14 +43,18 @@ TrackedScene::TrackedScene(std::vector<TrackedObject> objects, const core::Vocab
   }
 }
 
-void TrackedScene::see(int object, std::int64_t stamp_ns, const Eigen::Isometry3d& world_from_frame) {
+Eigen::Isometry3d TrackedScene::pose(int object, const Eigen::Isometry3d& world_from_frame) const {
   if (!world_from_frame.matrix().allFinite()) {
     throw core::Error("the pose of frame '" + objects_[object].frame + "' is not finite");
   }
+  return world_from_frame * objects_[object].frame_from_object;
+}
+
+void TrackedScene::see(int object, std::int64_t stamp_ns, const Eigen::Isometry3d& world_from_frame) {
+  const Eigen::Isometry3d pose = this->pose(object, world_from_frame);
   Track& track = tracks_[object];
   if (track.seen_ns && stamp_ns < *track.seen_ns) return;
   track.seen_ns = stamp_ns;
-  const Eigen::Isometry3d pose = world_from_frame * objects_[object].frame_from_object;
   Instance& instance = instances_[object];
   instance.x = pose.translation().x();
   instance.y = pose.translation().y();
@@ -88,14 +98,45 @@ std::string TrackedScene::label(std::size_t object) const {
   return objects_[object].item + " (" + objects_[object].frame + ")";
 }
 
-world::Orientation nearestOrientation(const world::OrientationLattice& lattice, double pan_rad, double tilt_rad) {
-  const std::string angles = "pan " + std::to_string(pan_rad) + " rad, tilt " + std::to_string(tilt_rad) + " rad";
-  // Far outside any joint's limits, and safe to round to an int.
-  if (!(std::abs(pan_rad) < 1e3 && std::abs(tilt_rad) < 1e3)) throw core::Error(angles + ": are not joint angles");
-  const world::Orientation nearest{static_cast<int>(std::lround(pan_rad / world::kStepRad)),
-                                   static_cast<int>(std::lround(tilt_rad / world::kStepRad))};
-  if (!lattice.contains(nearest)) throw core::Error(angles + ": is outside the joint limits of the camera's URDF");
-  return nearest;
+std::vector<TrackedObject> loadTrackedObjects(const std::string& yaml_file) {
+  const YAML::Node root = core::loadYamlFile(yaml_file);
+  if (!root.IsMap() || !root["objects"] || !root["objects"].IsSequence()) {
+    throw core::Error(yaml_file + ": needs 'objects', a list of {frame, item, position, rotation}");
+  }
+  world::checkKeys(root, {"objects"}, yaml_file);
+  std::vector<TrackedObject> objects;
+  for (const YAML::Node& entry : root["objects"]) {
+    if (!entry.IsMap()) throw core::Error(world::place(yaml_file, entry) + "a tracked object is a map");
+    world::checkKeys(entry, {"frame", "item", "position", "rotation"}, yaml_file);
+    TrackedObject object;
+    object.frame = world::readText(entry, "frame", yaml_file, "a tracked object");
+    object.item = world::readText(entry, "item", yaml_file, "a tracked object");
+    object.frame_from_object = Eigen::Translation3d(world::readPosition(entry["position"], yaml_file)) *
+                               Eigen::Isometry3d(world::readRotation(entry["rotation"], yaml_file));
+    objects.push_back(object);
+  }
+  return objects;
+}
+
+world::Orientation nearestOrientation(const world::CameraRig& rig, const Eigen::Isometry3d& world_from_camera) {
+  const Eigen::Vector3d axis = world_from_camera.linear().col(2);
+  const world::OrientationLattice& lattice = rig.lattice();
+  int nearest = 0;
+  double cosine = -2;
+  for (int i = 0; i < lattice.size(); ++i) {
+    const double other = axis.dot(rig.worldFromCamera(lattice.at(i)).linear().col(2));
+    if (other > cosine) {
+      cosine = other;
+      nearest = i;
+    }
+  }
+  const double angle_deg = std::acos(std::min(1.0, cosine)) * 180 / EIGEN_PI;
+  const double distance_m =
+      (rig.worldFromCamera(lattice.at(nearest)).translation() - world_from_camera.translation()).norm();
+  if (angle_deg <= kMostAngleDeg && distance_m <= kMostDistanceM) return lattice.at(nearest);
+  throw core::Error("the camera is " + std::to_string(distance_m) + " m and " + std::to_string(angle_deg) +
+                    " degrees from the nearest orientation of the world's camera URDF; use the robot's URDF in the "
+                    "world file, and check the frame of the world");
 }
 
 }  // namespace early_fusion::sim

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
@@ -13,6 +12,7 @@
 #include "early_fusion/core/names.h"
 #include "early_fusion/core/options.h"
 #include "early_fusion/world/convex_hull.h"
+#include "early_fusion/world/yaml_entries.h"
 #include "resource_path.h"
 
 namespace early_fusion::world {
@@ -22,31 +22,6 @@ namespace {
 constexpr double kMinSize = 0.005;      // [m]
 constexpr double kMinThickness = 1e-4;  // [m]
 constexpr double kMaxSize = 2.0;        // [m]
-
-/// "FILE:LINE: "
-std::string place(const std::string& file, const YAML::Node& node) {
-  return file + ":" + std::to_string(node.Mark().line + 1) + ": ";
-}
-
-void checkKeys(const YAML::Node& map, const std::vector<std::string>& known, const std::string& file) {
-  std::set<std::string> seen;
-  for (const auto& entry : map) {
-    const std::string key = entry.first.as<std::string>("");
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw core::Error(place(file, entry.first) + "unknown key '" + core::excerpt(key) + "'; known are " +
-                        core::joined(known));
-    }
-    if (!seen.insert(key).second) throw core::Error(place(file, entry.first) + key + " is given twice");
-  }
-}
-
-std::string readText(const YAML::Node& entry, const std::string& key, const std::string& file) {
-  const YAML::Node value = entry[key];
-  const std::string text = value && value.IsScalar() ? value.as<std::string>() : "";
-  if (text.empty())
-    throw core::Error(place(file, value ? value : entry) + "an object needs a " + key + ", which is a text");
-  return text;
-}
 
 /// One number, or one for each axis; 1 if absent.
 Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
@@ -65,29 +40,6 @@ Eigen::Vector3d readScale(const YAML::Node& value, const std::string& file) {
   text << value;
   throw core::Error(place(file, value) + "scale is '" + core::excerpt(text.str()) +
                     "'; it must be a positive number or [x, y, z]");
-}
-
-/// "[roll, pitch, yaw]" in degrees about the fixed axes x, y and z, in this order; no rotation if absent.
-Eigen::Quaterniond readRotation(const YAML::Node& value, const std::string& file) {
-  if (!value) return Eigen::Quaterniond::Identity();
-  Eigen::Vector3d degrees = Eigen::Vector3d::Constant(NAN);
-  try {
-    if (value.IsSequence() && value.size() == 3) {
-      for (int axis = 0; axis < 3; ++axis) degrees[axis] = value[axis].as<double>();
-    }
-  } catch (const YAML::Exception&) {
-    degrees.setConstant(NAN);
-  }
-  if (!degrees.allFinite() || degrees.cwiseAbs().maxCoeff() > 360) {
-    std::ostringstream text;
-    text << value;
-    throw core::Error(place(file, value) + "rotation is '" + core::excerpt(text.str()) +
-                      "'; it must be [roll, pitch, yaw], each within [-360, 360] degrees");
-  }
-  const Eigen::Vector3d angles = degrees * EIGEN_PI / 180;
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
-                            Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
-                            Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
 }
 
 /// Moves the mesh upright onto z = 0, centred above the origin. @return the point that became the origin.
@@ -116,10 +68,10 @@ Object readObject(const YAML::Node& entry, const std::string& file, int max_tria
   if (!entry.IsMap()) throw core::Error(place(file, entry) + "an object is a map of name, mesh and scale");
   checkKeys(entry, {"mesh", "name", "rotation", "scale"}, file);
   Object object;
-  object.name = readText(entry, "name", file);
+  object.name = readText(entry, "name", file, "an object");
   object.mesh_scale = readScale(entry["scale"], file);
   object.mesh_rotation = readRotation(entry["rotation"], file);
-  const std::string mesh = readText(entry, "mesh", file);
+  const std::string mesh = readText(entry, "mesh", file, "an object");
   const std::string where = place(file, entry) + "object '" + core::excerpt(object.name) + "': ";
   try {
     object.mesh_file = resourcePath(file, mesh);

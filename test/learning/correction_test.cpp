@@ -72,6 +72,16 @@ TEST(ShownBy, NothingElseIsUndone) {
   }
 }
 
+TEST(ShownBy, AConfirmedActionIsALabelAndIsNotUndone) {
+  WatchedStep confirmed = watched(1, Action::kPanLeft);
+  confirmed.confirmed = true;
+  const std::vector<ShownStep> shown = shownBy(
+      {confirmed, watched(2, Action::kPanLeft, Action::kPanRight), watched(1, Action::kIdle, Action::kCollect)});
+  EXPECT_FALSE(shown[0].undone);
+  EXPECT_EQ(shown[0].label, Action::kPanLeft);
+  EXPECT_EQ(shown[1].label, Action::kPanRight);
+}
+
 TEST(CorrectedTrajectory, OnlyLabelledStepsAreTrainedOn) {
   const std::vector<WatchedStep> steps = {watched(1, Action::kPanLeft), watched(2, Action::kPanLeft, Action::kPanRight),
                                           watched(1, Action::kCollect, Action::kCollect), watched(1, Action::kIdle)};

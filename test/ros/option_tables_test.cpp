@@ -17,6 +17,7 @@
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 #include "early_fusion/ros/robot/request_node.h"
+#include "early_fusion/ros/robot/tf_scene_node.h"
 #include "early_fusion/ros/simulator/simulator_node.h"
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
@@ -178,6 +179,7 @@ TEST(OptionTables, RosHasEveryParameterOfEveryNode) {
   expectParameters<CorrectionNode>("## correction_node");
   expectParameters<KeyboardNode>("## keyboard_node");
   expectParameters<SimulatedPersonNode>("## simulated_person_node");
+  expectParameters<TfSceneNode>("## tf_scene_node");
   expectParameters<CorrectionTrainerNode>("## correction_trainer_node", optionsOf<learning::CorrectionOptions>());
   EXPECT_TRUE(tablesIn(section(document("ros.md"), "## simulator_node")).count("diagnostic_period"));
 }
@@ -191,8 +193,9 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
         optionsOf<RequestNode::Options>(), optionsOf<learning::RetentionOptions>(),
         optionsOf<PanTiltDriverNode::Options>(), optionsOf<VirtualRobotNode::Options>(),
         optionsOf<CorrectionNode::Options>(), optionsOf<KeyboardNode::Options>(),
-        optionsOf<SimulatedPersonNode::Options>(), optionsOf<CorrectionTrainerNode::Options>(),
-        optionsOf<learning::SimulatedCorrectionOptions>(), optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
+        optionsOf<SimulatedPersonNode::Options>(), optionsOf<TfSceneNode::Options>(),
+        optionsOf<CorrectionTrainerNode::Options>(), optionsOf<learning::SimulatedCorrectionOptions>(),
+        optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }
   for (const core::Option& option : all) {

@@ -19,9 +19,9 @@ std::vector<std::string> pressesOf(const std::string& bytes) {
 }
 
 TEST(KeyReader, ReadsEveryKeyOfTheMap) {
-  EXPECT_EQ(pressesOf("\x1b[D\x1b[C\x1b[A\x1b[Bcri e"),
+  EXPECT_EQ(pressesOf("\x1b[D\x1b[C\x1b[A\x1b[Bcri ye"),
             std::vector<std::string>({"PAN_LEFT", "PAN_RIGHT", "TILT_UP", "TILT_DOWN", "COLLECT", "REMOVE", "IDLE",
-                                      "GO_ON", "EPISODE_DONE"}));
+                                      "GO_ON", "CONFIRM", "EPISODE_DONE"}));
 }
 
 TEST(KeyReader, ReadsTheArrowKeysOfATerminalInApplicationMode) {
@@ -29,7 +29,7 @@ TEST(KeyReader, ReadsTheArrowKeysOfATerminalInApplicationMode) {
 }
 
 TEST(KeyReader, LeavesOutUnknownAndUnfinishedKeys) {
-  EXPECT_EQ(pressesOf("xyz\x1b[5~\x1b[\x1b[C["), std::vector<std::string>({"PAN_RIGHT"}));
+  EXPECT_EQ(pressesOf("xwz\x1b[5~\x1b[\x1b[C["), std::vector<std::string>({"PAN_RIGHT"}));
   EXPECT_EQ(pressesOf("\x1b"
                       "c"),
             std::vector<std::string>())
@@ -41,8 +41,8 @@ TEST(KeyReader, LeavesOutUnknownAndUnfinishedKeys) {
 
 TEST(KeyMap, NamesAllKeys) {
   const std::string text = keyMapText();
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 9);
-  for (const char* key : {"left ", "right ", "up ", "down ", "c ", "r ", "i ", "space ", "e "}) {
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
+  for (const char* key : {"left ", "right ", "up ", "down ", "c ", "r ", "i ", "space ", "y ", "e "}) {
     EXPECT_NE(text.find(std::string("  ") + key), std::string::npos) << key;
   }
 }

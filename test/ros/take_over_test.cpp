@@ -90,6 +90,18 @@ TEST_F(TakeOverTest, AfterAPressTheNextStepWaitsLongerUnlessThePersonLetsGo) {
   EXPECT_TRUE(take_over_.onTime(now_).action);
 }
 
+TEST_F(TakeOverTest, AConfirmedStepIsThePolicysAndIsRecordedAsRight) {
+  pressed(0, 0);
+  step(0, 1);
+  const TakeOver::Output confirmed = press(kConfirm);
+  ASSERT_TRUE(confirmed.action);
+  EXPECT_EQ(confirmed.action->name, kPolicys);
+  EXPECT_EQ(confirmed.record->person, "");
+  EXPECT_TRUE(confirmed.record->confirmed);
+  step(0, 2);
+  EXPECT_FALSE(press(kGoOn).record->confirmed);
+}
+
 TEST_F(TakeOverTest, APressJustBeforeAStepIsForItAndAnOldOneIsNot) {
   pressed(0, 0);
   EXPECT_FALSE(press("REMOVE").action);

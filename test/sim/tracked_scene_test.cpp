@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/world/world.h"
+#include "experiment/temporary_folder.h"
 
 namespace early_fusion::sim {
 namespace {
@@ -100,11 +102,43 @@ TEST(TrackedScene, NamesTheFrameOfAPoseThatIsNotFinite) {
   EXPECT_EQ(errorOf([&] { scene.see(1, kSecond, poseAt(nan, 0, 0)); }), "the pose of frame 'tag_2' is not finite");
 }
 
-TEST(NearestOrientation, RoundsToWholeStepsWithinTheLimits) {
-  const world::OrientationLattice lattice{{-10, -5}, {10, 5}};
-  EXPECT_EQ(nearestOrientation(lattice, 3.4 * world::kStepRad, -1.6 * world::kStepRad), (world::Orientation{3, -2}));
-  EXPECT_THROW(nearestOrientation(lattice, 10.6 * world::kStepRad, 0), core::Error);
-  EXPECT_THROW(nearestOrientation(lattice, std::numeric_limits<double>::quiet_NaN(), 0), core::Error);
+TEST(NearestOrientation, IsThatOfTheNearestAxisUnlessTheCameraStandsElsewhere) {
+  const auto world = world::loadWorld("");
+  const world::Orientation orientation{3, 2};
+  const Eigen::Isometry3d pose = world->rig.worldFromCamera(orientation);
+  EXPECT_EQ(nearestOrientation(world->rig, pose), orientation);
+  const double less_than_half_a_step = 0.4 * world::kStepRad;
+  const Eigen::Isometry3d turned = pose * Eigen::AngleAxisd(less_than_half_a_step, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(nearestOrientation(world->rig, turned), orientation);
+  const Eigen::Isometry3d beside = Eigen::Translation3d(0, 0.1, 0) * pose;
+  EXPECT_NE(errorOf([&] { nearestOrientation(world->rig, beside); }).find("camera URDF"), std::string::npos);
+  const Eigen::Isometry3d backwards = pose * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY());
+  EXPECT_NE(errorOf([&] { nearestOrientation(world->rig, backwards); }).find("degrees from"), std::string::npos);
+}
+
+TEST(LoadTrackedObjects, ReadsFramesItemsAndPlaces) {
+  const experiment::TemporaryFolder folder;
+  const std::string file = folder.write(
+      "tracked.yaml", "objects:\n  - {frame: tag_1, item: mug, position: [0.1, 0, -0.2], rotation: [0, 0, 90]}\n");
+  const std::vector<TrackedObject> objects = loadTrackedObjects(file);
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_EQ(objects[0].frame, "tag_1");
+  EXPECT_EQ(objects[0].item, "mug");
+  const Eigen::Vector3d point = objects[0].frame_from_object * Eigen::Vector3d(1, 0, 0);
+  EXPECT_TRUE(point.isApprox(Eigen::Vector3d(0.1, 1, -0.2), 1e-12)) << point;
+}
+
+TEST(LoadTrackedObjects, NamesFileLineAndValueOfAFault) {
+  const experiment::TemporaryFolder folder;
+  const auto faultOf = [&](const std::string& text) {
+    return errorOf([&] { loadTrackedObjects(folder.write("tracked.yaml", text)); });
+  };
+  EXPECT_NE(faultOf("objects:\n  - {frame: a, item: mug, colour: red}\n").find(":2: unknown key 'colour'"),
+            std::string::npos);
+  EXPECT_NE(faultOf("objects:\n  - {frame: a}\n").find("needs a item"), std::string::npos);
+  EXPECT_NE(faultOf("objects:\n  - {frame: a, item: mug, position: [1, 2]}\n").find("position is '[1, 2]'"),
+            std::string::npos);
+  EXPECT_NE(faultOf("things: []\n").find("needs 'objects'"), std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ struct WatchedStep {
   SharedFrame frame;
   core::Request request;
   core::Action policys = core::Action::kIdle;  ///< the policy's action
-  std::optional<core::Action> persons;         ///< the person's, which was done instead; none: the person did not press
+  std::optional<core::Action> persons;         ///< the person's, which was done instead; none: the person pressed none
+  bool confirmed = false;                      ///< the person said that the policy's action is right
 
   core::Action done() const { return persons ? *persons : policys; }
 };
@@ -26,12 +27,12 @@ struct ShownStep {
 
 /// What the person's presses show about each step of an episode:
 ///
-/// - A pressed step: the press is its label.
+/// - A pressed step: the press is its label. A confirmed step: the policy's action is.
 /// - A move of the policy that the person undid. The moves before a press are undone as long as the presses from there
 ///   on reverse them one by one: the first press reverses the last move, the second the move before it, and so on.
 ///   The camera then shows again what it showed before the move. So the move's step has the label that the person
-///   pressed there; none if the person did not press there. A move that changed no frame, or after which the request
-///   changed, is not undone.
+///   pressed there; none if the person did not press there. A move that changed no frame, after which the request
+///   changed, or that was confirmed, is not undone.
 /// - Any other step: nothing.
 std::vector<ShownStep> shownBy(const std::vector<WatchedStep>& steps);
 

@@ -54,6 +54,10 @@ std::vector<world::ObjectPose> presentObjects(const world::World& world, const s
 /// scenes have no allowed request.
 EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Random& random);
 
+/// The same for a scene of given items, of which `requested` are requested.
+EpisodeSetup sampleEpisodeOf(const world::World& world, const std::vector<int>& items, int requested,
+                             core::Random& random);
+
 /// The same with the key's own random stream.
 EpisodeSetup sampleEpisode(const world::World& world, const EpisodeKey& key);
 

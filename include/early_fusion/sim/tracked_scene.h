@@ -44,6 +44,9 @@ class TrackedScene {
   /// The objects that are on the counter: not taken and seen at most `hold_sec` before `stamp_ns`.
   InstanceMask present(std::int64_t stamp_ns) const;
 
+  /// The place of an object whose frame is there. @throws Error as see().
+  Eigen::Isometry3d pose(int object, const Eigen::Isometry3d& world_from_frame) const;
+
   /// What a person must put back, as "item (frame)".
   std::vector<std::string> taken() const;
 
@@ -66,8 +69,13 @@ class TrackedScene {
   std::vector<Track> tracks_;
 };
 
-/// The orientation nearest to these joint angles (pan positive to the left, tilt downwards).
-/// @throws Error naming the angles if they are not finite, or the orientation is not in `lattice`.
-world::Orientation nearestOrientation(const world::OrientationLattice& lattice, double pan_rad, double tilt_rad);
+/// The tracked objects of a YAML file: `objects`, a list of {frame, item, position, rotation}. The last two are the
+/// object's place in its frame; config/tracked_objects.yaml explains them. @throws Error naming file, line and value.
+std::vector<TrackedObject> loadTrackedObjects(const std::string& yaml_file);
+
+/// The rig's orientation whose optical axis is nearest to a camera's.
+/// @throws Error if the camera looks more than 3 degrees past it, or stands more than 5 cm beside the rig's: then the
+/// rig is not that of the robot, or its frames are not.
+world::Orientation nearestOrientation(const world::CameraRig& rig, const Eigen::Isometry3d& world_from_camera);
 
 }  // namespace early_fusion::sim

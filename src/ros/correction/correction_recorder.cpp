@@ -36,6 +36,7 @@ learning::WatchedStep CorrectionRecorder::stepOf(const Correction& message) cons
   step.request = vocabulary_.request(message.items);
   step.policys = core::actionFromName(message.policy);
   if (!message.person.empty()) step.persons = core::actionFromName(message.person);
+  step.confirmed = message.confirmed;
   return step;
 }
 

@@ -26,6 +26,7 @@ const std::vector<Key>& keys() {
       {"r", "r", core::actionName(Action::kRemove), "remove the object in the middle"},
       {"i", "i", core::actionName(Action::kIdle), "do nothing"},
       {" ", "space", kGoOn, "let the policy act"},
+      {"y", "y", kConfirm, "let the policy act, and learn that it is right"},
       {"e", "e", kEpisodeDone, "end the episode"}};
   return table;
 }
@@ -47,11 +48,12 @@ double valueAt(const Values& values, int index, const char* parameter, const cha
 }  // namespace
 
 void checkPress(const std::string& name) {
-  if (name == kGoOn || name == kEpisodeDone) return;
+  if (name == kGoOn || name == kConfirm || name == kEpisodeDone) return;
   try {
     core::actionFromName(name);
   } catch (const core::Error& error) {
-    throw core::Error(std::string(error.what()) + ", or the presses " + kGoOn + " and " + kEpisodeDone);
+    throw core::Error(std::string(error.what()) + ", or the presses " + kGoOn + ", " + kConfirm + " and " +
+                      kEpisodeDone);
   }
 }
 
@@ -89,6 +91,7 @@ core::OptionSet JoyReader::Options::options() {
   add("remove_button", remove_button, "index of the button for REMOVE");
   add("idle_button", idle_button, "index of the button for IDLE");
   add("go_on_button", go_on_button, "index of the button that lets the policy act at once");
+  add("confirm_button", confirm_button, "index of the button that says that the policy is right");
   add("done_button", done_button, "index of the button that ends the episode");
   return set;
 }
@@ -96,11 +99,12 @@ core::OptionSet JoyReader::Options::options() {
 std::optional<std::string> JoyReader::add(const sensor_msgs::Joy& joy) {
   const double pan = valueAt(joy.axes, options_.pan_axis, "pan_axis", "axes");
   const double tilt = valueAt(joy.axes, options_.tilt_axis, "tilt_axis", "axes");
-  const std::array<std::tuple<int, const char*, std::string>, 5> known = {
+  const std::array<std::tuple<int, const char*, std::string>, 6> known = {
       {{options_.collect_button, "collect_button", core::actionName(Action::kCollect)},
        {options_.remove_button, "remove_button", core::actionName(Action::kRemove)},
        {options_.idle_button, "idle_button", core::actionName(Action::kIdle)},
        {options_.go_on_button, "go_on_button", kGoOn},
+       {options_.confirm_button, "confirm_button", kConfirm},
        {options_.done_button, "done_button", kEpisodeDone}}};
   std::optional<std::string> pressed;
   for (const auto& [index, parameter, press] : known) {

@@ -17,6 +17,7 @@ core::OptionSet SimulatedPersonNode::Options::options() {
   core::OptionSet set("simulated person");
   set.add("world", world, "world file, as the simulator's");
   set.include(person.options());
+  set.add("confirm", confirm, "press CONFIRM where the policy's action is one of the expert's, so that it is learnt");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -24,6 +25,7 @@ core::OptionSet SimulatedPersonNode::Options::options() {
 SimulatedPersonNode::SimulatedPersonNode(const Options& options)
     : world_(world::loadWorld(options.world)),
       person_(options.person),
+      confirm_(options.confirm),
       press_publisher_(node_.advertise<Press>(kPressTopic, kStepQueue)),
       scene_subscriber_(node_, kSceneTopic, kStepQueue),
       proposal_subscriber_(node_, kProposalTopic, kStepQueue),
@@ -47,16 +49,18 @@ void SimulatedPersonNode::onProposal(const SceneConstPtr& scene, const ActionCon
 std::string SimulatedPersonNode::answer(const Scene& scene, const Action& proposal) {
   const SceneState now = sceneState(scene, world_->objects.vocabulary(), world_->rig.lattice());
   const int step = static_cast<int>(scene.step);
-  if (step == 0 || !cone_) {
-    pans_.clear();
+  if (step == 0) pans_.clear();
+  if (!cone_ || now.instances != instances_) {
     instances_ = now.instances;
     cone_ = std::make_unique<sim::ConeTable>(*world_, instances_);
   }
   pans_.push_back(now.state.orientation.pan);
   const expert::Label label = learning::trainingLabel(person_.expert(), *cone_, instances_, now.state,
                                                       expert::panDirectionOver(pans_), now.state.request);
-  const auto press = person_.answer(step, label, core::actionFromName(proposal.name));
-  return press ? core::actionName(*press) : kGoOn;
+  const core::Action policys = core::actionFromName(proposal.name);
+  const auto press = person_.answer(step, label, policys);
+  if (press) return core::actionName(*press);
+  return confirm_ && expert::contains(label.optimal, policys) ? kConfirm : kGoOn;
 }
 
 }  // namespace early_fusion::nodes

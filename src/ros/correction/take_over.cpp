@@ -131,18 +131,22 @@ TakeOver::Output TakeOver::onPress(const std::string& name, const ::ros::Time& s
     }
     return output;
   }
-  hold_until_sec_ = name == kGoOn ? 0 : now_sec + options_.hold_sec;
-  if (open_) return answer(name == kGoOn ? "" : name);
-  if (name != kGoOn) {
+  const bool acts = name != kGoOn && name != kConfirm;
+  hold_until_sec_ = acts ? now_sec + options_.hold_sec : 0;
+  if (open_) return answer(name);
+  if (acts) {
     next_press_ = name;
     next_press_sec_ = now_sec;
   }
   return {};
 }
 
-TakeOver::Output TakeOver::answer(const std::string& person) {
+/// @param press empty: none.
+TakeOver::Output TakeOver::answer(const std::string& press) {
   Output output;
+  const std::string person = press == kGoOn || press == kConfirm ? "" : press;
   open_->record.person = person;
+  open_->record.confirmed = press == kConfirm;
   output.record = open_->record;
   output.action = answered_ = answerOf(open_->policy, person, open_->record.items);
   open_.reset();

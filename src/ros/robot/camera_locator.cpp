@@ -18,12 +18,6 @@ namespace {
 constexpr double kDepthAgeSec = 0.5;
 constexpr double kDepthSilenceSec = 5;  // after which no depth image is expected to come
 
-Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform) {
-  const auto& t = transform.translation;
-  const auto& q = transform.rotation;
-  return Eigen::Translation3d(t.x, t.y, t.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
-}
-
 }  // namespace
 
 core::OptionSet CameraLocator::Options::options() {

@@ -23,6 +23,12 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
   return message;
 }
 
+Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform) {
+  const auto& t = transform.translation;
+  const auto& r = transform.rotation;
+  return Eigen::Translation3d(t.x, t.y, t.z) * Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized();
+}
+
 geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
   const Eigen::Quaterniond rotation(transform.linear());
   geometry_msgs::Pose pose;

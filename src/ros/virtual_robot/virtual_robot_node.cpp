@@ -3,11 +3,13 @@
 #include <early_fusion/EpisodeResult.h>
 #include <early_fusion/SetRequest.h>
 #include <ros/init.h>
+#include <std_srvs/Trigger.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <limits>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/core/names.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 #include "early_fusion/ros/simulator/markers.h"
@@ -21,6 +23,7 @@ constexpr double kMarkerPeriodSec = 0.5;
 constexpr double kSettleSec = 0.3;   // after the last action of a scene, until its motion and its pick have begun
 constexpr double kPatienceSec = 10;  // without an action, after which a scene ends
 constexpr double kDoneSec = 1;       // the same if everything is collected
+constexpr double kGoOnSec = 0.3;     // between two tries to go on after the objects are put back
 
 /// A robot's scene has no last step: the policy's actions are counted instead.
 sim::Task endless(sim::Task task) {
@@ -48,6 +51,10 @@ core::OptionSet VirtualRobotNode::Options::options() {
   set.add("seed", seed, "seed of the scenes, the noise and the failures");
   set.add("ask", ask, "request the scene's objects, and begin the next scene after the task's number of actions");
   set.add("scenes", scenes, "number of scenes, after which the node prints the mean scores and ends; 0: no limit");
+  set.add("objects", objects, "objects of each scene, placed anew: names, separated by commas; empty: the task's");
+  set.add("put_back", put_back,
+          "place all objects anew whenever tf_scene_node asks for what was taken away, and tell it to go on");
+  set.include(tracker.options());
   set.include(lens.options());
   set.include(sensor.options());
   set.addChoice(
@@ -65,14 +72,17 @@ core::OptionSet VirtualRobotNode::Options::options() {
 VirtualRobotNode::VirtualRobotNode(const Options& options)
     : options_(options),
       world_(world::loadWorld(options.world)),
+      objects_(world_->objects.vocabulary().request(core::splitNames(options.objects))),
       unit_(node_, world_->rig, options.unit),
       camera_(*world_, options.lens, options.sensor, options.seed),
+      tracker_(*world_, options.tracker, options.seed),
       next_{sim::loadTask(options.task), options.seed, 0},
       image_transport_(node_),
       camera_publisher_(image_transport_.advertiseCamera(kImageTopic, 2)),
       episode_publisher_(node_.advertise<EpisodeResult>(kEpisodeTopic, 64)),
       marker_publisher_(node_.advertise<visualization_msgs::MarkerArray>(kMarkersTopic, 1)),
       request_client_(node_.serviceClient<SetRequest>(kSetRequestService)),
+      continue_client_(node_.serviceClient<std_srvs::Trigger>(kContinueService)),
       pick_server_(node_, kPickAction, false) {
   unit_.place(world_->rig.lattice().at(world_->rig.lattice().size() / 2));
   action_subscriber_ =
@@ -82,6 +92,16 @@ VirtualRobotNode::VirtualRobotNode(const Options& options)
                                        [this](const ::ros::WallTimerEvent&) { onFrameTimer(); });
   marker_timer_ = node_.createWallTimer(::ros::WallDuration(kMarkerPeriodSec),
                                         [this](const ::ros::WallTimerEvent&) { publishMarkers(); });
+  if (options_.tracker.track) {
+    tracker_timer_ = node_.createWallTimer(::ros::WallDuration(1 / options_.tracker.rate_hz),
+                                           [this](const ::ros::WallTimerEvent&) { publishTracked(); });
+  }
+  if (options_.put_back) {
+    put_back_subscriber_ = node_.subscribe<std_msgs::String>(
+        kPutBackTopic, 1, [this](const std_msgs::StringConstPtr& asked) { onPutBack(*asked); });
+    continue_timer_ = node_.createWallTimer(
+        ::ros::WallDuration(kGoOnSec), [this](const ::ros::WallTimerEvent&) { goOn(); }, false, false);
+  }
   pick_timer_ = node_.createWallTimer(
       ::ros::WallDuration(std::max(options_.pick_duration_sec, 1e-3)),
       [this](const ::ros::WallTimerEvent&) { finishPick(); }, true, false);
@@ -98,11 +118,36 @@ void VirtualRobotNode::onFrameTimer() {
 }
 
 bool VirtualRobotNode::mayBegin() {
-  return !options_.ask || (request_client_.exists() && action_subscriber_.getNumPublishers() > 0);
+  return options_.put_back ? false
+                           : !options_.ask || (request_client_.exists() && action_subscriber_.getNumPublishers() > 0);
+}
+
+sim::EpisodeSetup VirtualRobotNode::setupOf(const sim::EpisodeKey& key) const {
+  if (objects_.empty()) return sim::sampleEpisode(*world_, key);
+  core::Random random(key.seed, {core::kEpisodeStream, key.number});
+  return sim::sampleEpisodeOf(*world_, objects_, key.task.requested, random);
+}
+
+void VirtualRobotNode::onPutBack(const std_msgs::String& asked) {
+  if (asked.data.empty()) return;
+  try {
+    if (begin(next_)) ++next_.number;
+  } catch (const core::Error& error) {
+    return health_.drop("scene", error.what());
+  }
+  continue_timer_.start();
+}
+
+void VirtualRobotNode::goOn() {
+  std_srvs::Trigger trigger;
+  if (!continue_client_.call(trigger)) return health_.count("unanswered tries to go on");
+  if (trigger.response.success) return continue_timer_.stop();
+  health_.count("refused tries to go on");
+  ROS_DEBUG("%s", trigger.response.message.c_str());
 }
 
 bool VirtualRobotNode::begin(const sim::EpisodeKey& key) {
-  scene_.emplace(Scene{key, sim::Episode(*world_, endless(key.task), sim::sampleEpisode(*world_, key)), 0, {}, {}});
+  scene_.emplace(Scene{key, sim::Episode(*world_, endless(key.task), setupOf(key)), 0, {}, {}});
   const sim::Episode& episode = scene_->episode;
   camera_.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
   unit_.place(episode.state().orientation);
@@ -161,6 +206,10 @@ void VirtualRobotNode::publishMarkers() {
   header.stamp = ::ros::Time::now();
   header.frame_id = world_->rig.worldFrame();
   marker_publisher_.publish(objectMarkers(*world_, scene_->episode, header));
+}
+
+void VirtualRobotNode::publishTracked() {
+  if (scene_) tracker_.publish(scene_->episode.setup().instances, scene_->episode.state().present);
 }
 
 void VirtualRobotNode::onAction(const Action& action) {

@@ -12,10 +12,11 @@
 namespace early_fusion::nodes {
 
 // Names of presses that are no actions.
-inline constexpr char kGoOn[] = "GO_ON";                ///< the policy is right: do not wait for a press
+inline constexpr char kGoOn[] = "GO_ON";                ///< the policy acts: do not wait for a press
+inline constexpr char kConfirm[] = "CONFIRM";           ///< the same, and the policy is right: its action is a label
 inline constexpr char kEpisodeDone[] = "EPISODE_DONE";  ///< the episode ends
 
-/// @throws core::Error listing the known ones unless `name` is an action, GO_ON or EPISODE_DONE.
+/// @throws core::Error listing the known ones unless `name` is an action or one of these.
 void checkPress(const std::string& name);
 
 /// Turns the keys of a terminal into presses, byte by byte: arrow keys come as three bytes.
@@ -43,6 +44,7 @@ class JoyReader {
     int remove_button = 1;
     int idle_button = 2;
     int go_on_button = 3;
+    int confirm_button = -1;
     int done_button = 7;
 
     core::OptionSet options();

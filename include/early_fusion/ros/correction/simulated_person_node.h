@@ -19,13 +19,15 @@
 
 namespace early_fusion::nodes {
 
-/// Presses in place of a person, in the simulator: the expert's action where the policy has erred some steps running,
-/// else GO_ON. It answers every proposal, so a session with it does not depend on timing.
+/// Presses in place of a person who sees the scene, the simulator's or a tracked one: the expert's action where the
+/// policy has erred some steps running, else GO_ON or CONFIRM. It answers every proposal that has a scene, so a session
+/// with it does not depend on timing.
 class SimulatedPersonNode {
  public:
   struct Options {
     std::string world;  ///< the simulator's
     learning::SimulatedPerson::Options person;
+    bool confirm = false;
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
@@ -43,8 +45,9 @@ class SimulatedPersonNode {
   ::ros::NodeHandle node_;
   std::shared_ptr<const world::World> world_;
   learning::SimulatedPerson person_;
+  bool confirm_;
   Health health_;
-  std::vector<sim::Instance> instances_;  // of the current episode
+  std::vector<sim::Instance> instances_;  // of the current scene; a simulated one is the same for a whole episode
   std::unique_ptr<sim::ConeTable> cone_;  // of the same
   std::vector<int> pans_;                 // of each step so far [steps]
   Press answered_;                        // the last answer

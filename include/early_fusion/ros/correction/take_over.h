@@ -41,8 +41,8 @@ class TakeOver {
   Output onStep(const Action& policy, const Request& request, const sensor_msgs::Image& frame, const std::string& held,
                 double now_sec);
 
-  /// A person has pressed: an action, GO_ON or EPISODE_DONE. @param stamp of the image that is meant; zero: of the open
-  /// step, or of the next one if it opens soon.
+  /// A person has pressed: an action, GO_ON, CONFIRM or EPISODE_DONE. @param stamp of the image that is meant; zero: of
+  /// the open step, or of the next one if it opens soon.
   /// @throws core::Error naming the stamp if another step is open, or an unknown name and the known ones.
   Output onPress(const std::string& name, const ::ros::Time& stamp, double now_sec);
 
@@ -61,7 +61,7 @@ class TakeOver {
 
   bool begins(const Action& policy) const;
   Output endEpisode();
-  Output answer(const std::string& person);
+  Output answer(const std::string& press);
 
   Options options_;
   std::optional<Open> open_;

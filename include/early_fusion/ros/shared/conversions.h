@@ -6,6 +6,7 @@
 #include <early_fusion/Scene.h>
 #include <early_fusion/Weights.h>
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Transform.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
@@ -24,6 +25,8 @@
 namespace early_fusion::nodes {
 
 geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
+
+Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform);
 
 /// The first episode of a goal. @throws core::Error as sim::parseTask(), sim::withUpTo() and sim::withPairs().
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal);

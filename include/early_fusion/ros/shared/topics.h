@@ -42,6 +42,10 @@ inline constexpr char kFoundTopic[] = "found";
 inline constexpr char kFoundMarkersTopic[] = "found_markers";
 inline constexpr char kPickAction[] = "pick";
 
+// Of tracked objects, on a robot.
+inline constexpr char kPutBackTopic[] = "put_back";  ///< latched: what a person is asked to do; empty: nothing
+inline constexpr char kContinueService[] = "tf_scene/continue";
+
 // Of the trainer.
 inline constexpr char kWeightsTopic[] = "weights";  ///< latched
 inline constexpr char kExpertTopic[] = "expert";

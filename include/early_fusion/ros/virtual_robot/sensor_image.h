@@ -13,7 +13,8 @@ namespace early_fusion::nodes {
 /// The virtual robot's random streams, besides those of core::RandomStream. The braces show the keys that follow.
 enum VirtualRobotStream : std::uint64_t {
   kSensorStream = 101,  ///< {image}: noise
-  kPickStream = 102     ///< {pick}: whether it fails
+  kPickStream = 102,    ///< {pick}: whether it fails
+  kTrackerStream = 103  ///< {sighting}: errors and dropouts of the objects' frames
 };
 
 /// What a real camera does to the image of a scene.
