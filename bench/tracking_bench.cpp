@@ -11,6 +11,7 @@
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/trajectory.h"
 #include "early_fusion/sim/episode.h"
+#include "early_fusion/sim/tracked_scene.h"
 
 namespace early_fusion::bench {
 namespace {
@@ -21,30 +22,12 @@ struct TrackingBenchOptions {
   std::uint64_t seed = learning::kHeldOutSeed;
 };
 
-struct Errors {
-  double mm;
-  double degrees;
-};
-
-double normal(core::Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * M_PI * random.uniform());
-}
-
-std::vector<sim::Instance> asTracked(std::vector<sim::Instance> instances, const Errors& errors, core::Random& random) {
-  for (sim::Instance& instance : instances) {
-    instance.x += 1e-3 * errors.mm * normal(random);
-    instance.y += 1e-3 * errors.mm * normal(random);
-    instance.theta += errors.degrees * M_PI / 180 * normal(random);
-  }
-  return instances;
-}
-
 /// Steps, and those with a label that is not optimal. COLLECT and REMOVE apart: they take something away.
 struct Counts {
   int steps = 0, wrong = 0, wrong_picks = 0;
 };
 
-void play(const world::World& world, const sim::EpisodeKey& key, const Errors& errors, core::Random& random,
+void play(const world::World& world, const sim::EpisodeKey& key, const sim::TrackerErrors& errors, core::Random& random,
           Counts& counts) {
   constexpr auto kExpert = learning::TrainingExpert::kSearching;
   sim::Episode episode(world, key);
@@ -54,7 +37,7 @@ void play(const world::World& world, const sim::EpisodeKey& key, const Errors& e
     const sim::EpisodeState& state = episode.state();
     pans.push_back(state.orientation.pan);
     const expert::PanDirection direction = expert::panDirectionOver(pans);
-    const std::vector<sim::Instance> tracked = asTracked(truth, errors, random);
+    const std::vector<sim::Instance> tracked = sim::asTracked(truth, errors, random);
     const auto label = learning::trainingLabel(kExpert, episode.cone(), truth, state, direction, state.request);
     const auto seen =
         learning::trainingLabel(kExpert, sim::ConeTable(world, tracked), tracked, state, direction, state.request);
@@ -71,7 +54,8 @@ void run(const TrackingBenchOptions& options) {
   const sim::Task task = sim::loadTask(options.task);
   std::printf("%s, %d episodes\n%8s %8s %14s %18s\n", task.name.c_str(), options.episodes, "[mm]", "[deg]",
               "wrong labels", "wrong COLLECT etc.");
-  for (const Errors& errors : {Errors{0, 0}, {1, 0}, {3, 0}, {5, 0}, {10, 0}, {20, 0}, {0, 5}, {0, 20}, {5, 5}}) {
+  for (const sim::TrackerErrors& errors :
+       {sim::TrackerErrors{0, 0}, {1, 0}, {3, 0}, {5, 0}, {10, 0}, {20, 0}, {0, 5}, {0, 20}, {5, 5}}) {
     core::Random random(options.seed);
     Counts counts;
     for (int number = 0; number < options.episodes; ++number) {

@@ -13,6 +13,7 @@ namespace early_fusion::learning {
 namespace {
 
 constexpr char kScores[] = "scores.csv";
+constexpr std::uint64_t kTrackingStream = 104;  // {episode, step}: errors of what the person sees; see core::RandomStream
 
 /// A policy that knows more items than the world whose episodes it plays, in another order.
 std::unique_ptr<Agent> makeWorldAgent(model::TrainablePolicy& policy, const core::Vocabulary& world_items) {
@@ -33,16 +34,17 @@ std::unique_ptr<Agent> makeWorldAgent(model::TrainablePolicy& policy, const core
 /// A policy whose actions a person may replace. For one episode at a time.
 class WatchedAgent : public Agent {
  public:
-  WatchedAgent(Agent& policy, SimulatedPerson& person) : policy_(policy), person_(person) {}
+  WatchedAgent(const world::World& world, Agent& policy, SimulatedPerson& person, const sim::TrackerErrors& tracker)
+      : world_(world), policy_(policy), person_(person), tracker_(tracker) {}
 
   void act(const std::vector<Situation>& situations, std::vector<core::Action>& actions) override {
     policy_.act(situations, actions);
     const Situation& now = situations.front();
     const sim::EpisodeState& state = now.state->state();
-    const expert::Label label = trainingLabel(person_.expert(), now.state->cone(), now.state->setup().instances, state,
-                                              now.pan_direction, state.request);
+    const expert::Label label = labelOf(now);
     policys_.push_back(actions.front());
     persons_.push_back(person_.answer(state.step, label, actions.front()));
+    confirmed_.push_back(!persons_.back() && person_.confirms(label, actions.front()));
     if (persons_.back()) actions.front() = *persons_.back();
   }
 
@@ -50,12 +52,28 @@ class WatchedAgent : public Agent {
 
   const std::vector<core::Action>& policys() const { return policys_; }
   const std::vector<std::optional<core::Action>>& persons() const { return persons_; }
+  const std::vector<bool>& confirmed() const { return confirmed_; }
 
  private:
+  expert::Label labelOf(const Situation& now) const {
+    const sim::EpisodeState& state = now.state->state();
+    const std::vector<sim::Instance>& instances = now.state->setup().instances;
+    const auto label = [&](const sim::ConeTable& cone, const std::vector<sim::Instance>& seen) {
+      return trainingLabel(person_.expert(), cone, seen, state, now.pan_direction, state.request);
+    };
+    if (tracker_.mm == 0 && tracker_.degrees == 0) return label(now.state->cone(), instances);
+    core::Random random(0, {kTrackingStream, now.episode, static_cast<std::uint64_t>(state.step)});
+    const std::vector<sim::Instance> seen = sim::asTracked(instances, tracker_, random);
+    return label(sim::ConeTable(world_, seen), seen);
+  }
+
+  const world::World& world_;
   Agent& policy_;
   SimulatedPerson& person_;
+  sim::TrackerErrors tracker_;
   std::vector<core::Action> policys_;
   std::vector<std::optional<core::Action>> persons_;
+  std::vector<bool> confirmed_;
 };
 
 /// Where scores come from.
@@ -98,20 +116,25 @@ core::OptionSet SimulatedCorrectionOptions::options() {
   set.add("evaluation_episodes", evaluation_episodes, 0, 1000000, "episodes",
           "held-out episodes of a score, in each of the two worlds; 0: no scores");
   set.include(person.options());
+  set.add("track_noise", tracker.mm, 0, 1000, "mm",
+          "standard deviation of the positions, along x and y, at which the person sees the objects");
+  set.add("track_angle_noise", tracker.degrees, 0, 180, "degrees", "the same of their rotations about z");
   set.include(correction.options());
   return set;
 }
 
-std::vector<WatchedStep> playWatched(RolloutRunner& runner, const core::Vocabulary& items, std::uint64_t episode,
-                                     model::TrainablePolicy& policy, SimulatedPerson& person) {
+std::vector<WatchedStep> playWatched(RolloutRunner& runner, const world::World& world, std::uint64_t episode,
+                                     model::TrainablePolicy& policy, SimulatedPerson& person,
+                                     const sim::TrackerErrors& tracker) {
+  const core::Vocabulary& items = world.objects.vocabulary();
   const auto agent = makeWorldAgent(policy, items);
-  WatchedAgent watched(*agent, person);
+  WatchedAgent watched(world, *agent, person, tracker);
   std::vector<WatchedStep> steps;
   runner.run(episode, 1, watched, true, [&](const Trajectory& trajectory) {
     for (std::size_t i = 0; i < trajectory.steps.size(); ++i) {
       const TrajectoryStep& step = trajectory.steps[i];
       steps.push_back({step.frame, policy.vocabulary().request(items.names(step.request)), watched.policys()[i],
-                       watched.persons()[i]});
+                       watched.persons()[i], watched.confirmed()[i]});
     }
   });
   return steps;
@@ -147,8 +170,7 @@ void simulateCorrections(const SimulatedCorrectionOptions& options,
   addScore();
   for (int episode = 0; episode < options.episodes; ++episode) {
     const CorrectionRound before = session.trainer().round();
-    const std::vector<WatchedStep> steps =
-        playWatched(runner, robot.world->objects.vocabulary(), episode, policy, person);
+    const std::vector<WatchedStep> steps = playWatched(runner, *robot.world, episode, policy, person, options.tracker);
     const CorrectionRound& after = session.add(steps, [&](double) {
       if (may_stop) may_stop();
     });

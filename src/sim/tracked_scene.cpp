@@ -20,6 +20,11 @@ namespace {
 constexpr double kMostHoldSec = 3600;
 constexpr double kMostAngleDeg = 3, kMostDistanceM = 0.05;  // of a camera from the rig's
 
+/// A standard normal number (Box and Muller 1958).
+double normal(core::Random& random) {
+  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * EIGEN_PI * random.uniform());
+}
+
 std::int64_t holdNs(double hold_sec) {
   if (!(hold_sec >= 0 && hold_sec <= kMostHoldSec)) {
     throw core::Error("hold_sec: " + std::to_string(hold_sec) + " is not in [0, 3600]");
@@ -28,6 +33,15 @@ std::int64_t holdNs(double hold_sec) {
 }
 
 }  // namespace
+
+std::vector<Instance> asTracked(std::vector<Instance> instances, const TrackerErrors& errors, core::Random& random) {
+  for (Instance& instance : instances) {
+    instance.x += 1e-3 * errors.mm * normal(random);
+    instance.y += 1e-3 * errors.mm * normal(random);
+    instance.theta += errors.degrees * EIGEN_PI / 180 * normal(random);
+  }
+  return instances;
+}
 
 TrackedScene::TrackedScene(std::vector<TrackedObject> objects, const core::Vocabulary& vocabulary, double hold_sec)
     : objects_(std::move(objects)), hold_ns_(holdNs(hold_sec)), tracks_(objects_.size()) {

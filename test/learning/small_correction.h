@@ -42,7 +42,7 @@ class SmallCorrection {
   std::vector<WatchedStep> watch(CorrectionTrainer& trainer, std::uint64_t number) const {
     SimulatedPerson person({1, "searching"});
     RolloutRunner runner(*world, sim::loadTask(files.task()), 7, person.expert());
-    return playWatched(runner, world->objects.vocabulary(), number, trainer.policy(), person);
+    return playWatched(runner, *world, number, trainer.policy(), person);
   }
 
   const SmallSession files;

@@ -7,6 +7,7 @@
 #include "early_fusion/learning/correction_session.h"
 #include "early_fusion/learning/evaluation.h"
 #include "early_fusion/learning/simulated_person.h"
+#include "early_fusion/sim/tracked_scene.h"
 
 namespace early_fusion::learning {
 
@@ -17,6 +18,7 @@ struct SimulatedCorrectionOptions {
   std::string robot_world;  ///< where the policy acts; empty: config/world.yaml of the package
   std::string robot_task = "simple";
   std::uint64_t robot_seed = 7;
+  sim::TrackerErrors tracker;  ///< of what the person sees
   int episodes = 100;
   int score_every = 10;           ///< episodes
   int evaluation_episodes = 200;  ///< 0: no scores
@@ -41,8 +43,10 @@ void simulateCorrections(const SimulatedCorrectionOptions& options,
                          const std::function<void(const std::string&)>& report,
                          const std::function<void()>& may_stop = {});
 
-/// Plays one episode of the runner with the policy and a person. @return all its steps, in the policy's vocabulary.
-std::vector<WatchedStep> playWatched(RolloutRunner& runner, const core::Vocabulary& items, std::uint64_t episode,
-                                     model::TrainablePolicy& policy, SimulatedPerson& person);
+/// Plays one episode of the runner with the policy and a person. @param tracker of the objects' places that the person
+/// sees. @return all its steps, in the policy's vocabulary.
+std::vector<WatchedStep> playWatched(RolloutRunner& runner, const world::World& world, std::uint64_t episode,
+                                     model::TrainablePolicy& policy, SimulatedPerson& person,
+                                     const sim::TrackerErrors& tracker = {});
 
 }  // namespace early_fusion::learning

@@ -16,6 +16,7 @@ class SimulatedPerson {
   struct Options {
     int errors = 3;                    ///< steps running
     std::string expert = "searching";  ///< one of trainingExpertNames()
+    bool confirm = false;              ///< says where the policy is right
 
     core::OptionSet options();
   };
@@ -27,6 +28,9 @@ class SimulatedPerson {
   /// What the person does instead of the policy's action; none: nothing. Steps must come in order.
   /// @param step of the episode; 0 begins another one. @param label of the person's expert for this step.
   std::optional<core::Action> answer(int step, const expert::Label& label, core::Action policys);
+
+  /// Whether the person says that the policy's action is right. Only if answer() is none.
+  bool confirms(const expert::Label& label, core::Action policys) const;
 
  private:
   Options options_;

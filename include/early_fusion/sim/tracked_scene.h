@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "early_fusion/core/random.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/sim/scene.h"
 #include "early_fusion/world/camera_rig.h"
@@ -19,6 +20,15 @@ struct TrackedObject {
   /// The object's origin and axes, as in the object set, in the tracked frame [m].
   Eigen::Isometry3d frame_from_object = Eigen::Isometry3d::Identity();
 };
+
+/// Standard deviations of a tracker's errors.
+struct TrackerErrors {
+  double mm = 0;       ///< of a position, along x and y
+  double degrees = 0;  ///< of a rotation about z
+};
+
+/// The instances where a tracker with errors sees them.
+std::vector<Instance> asTracked(std::vector<Instance> instances, const TrackerErrors& errors, core::Random& random);
 
 /// The objects of a real scene, from the frames that a tracker reports. Instance i is the i-th tracked object, always.
 /// Stamps are in nanoseconds of one clock.

@@ -17,7 +17,6 @@ core::OptionSet SimulatedPersonNode::Options::options() {
   core::OptionSet set("simulated person");
   set.add("world", world, "world file, as the simulator's");
   set.include(person.options());
-  set.add("confirm", confirm, "press CONFIRM where the policy's action is one of the expert's, so that it is learnt");
   addDiagnosticPeriod(set, diagnostic_period_sec);
   return set;
 }
@@ -25,7 +24,6 @@ core::OptionSet SimulatedPersonNode::Options::options() {
 SimulatedPersonNode::SimulatedPersonNode(const Options& options)
     : world_(world::loadWorld(options.world)),
       person_(options.person),
-      confirm_(options.confirm),
       press_publisher_(node_.advertise<Press>(kPressTopic, kStepQueue)),
       scene_subscriber_(node_, kSceneTopic, kStepQueue),
       proposal_subscriber_(node_, kProposalTopic, kStepQueue),
@@ -60,7 +58,7 @@ std::string SimulatedPersonNode::answer(const Scene& scene, const Action& propos
   const core::Action policys = core::actionFromName(proposal.name);
   const auto press = person_.answer(step, label, policys);
   if (press) return core::actionName(*press);
-  return confirm_ && expert::contains(label.optimal, policys) ? kConfirm : kGoOn;
+  return person_.confirms(label, policys) ? kConfirm : kGoOn;
 }
 
 }  // namespace early_fusion::nodes

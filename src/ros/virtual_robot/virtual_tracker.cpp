@@ -1,28 +1,19 @@
 #include "early_fusion/ros/virtual_robot/virtual_tracker.h"
 
-#include <cmath>
 #include <map>
 
 #include "early_fusion/core/random.h"
 #include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/virtual_robot/sensor_image.h"
+#include "early_fusion/sim/tracked_scene.h"
 
 namespace early_fusion::nodes {
-
-namespace {
-
-/// A standard normal number (Box-Muller).
-double normal(core::Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * M_PI * random.uniform());
-}
-
-}  // namespace
 
 core::OptionSet VirtualTracker::Options::options() {
   core::OptionSet set("virtual tracker");
   set.add("track", track, "publish the objects' frames on tf, such as mug_1 and mug_2");
   set.add("track_rate", rate_hz, 0.1, 1000, "Hz", "sightings a second");
-  set.add("track_noise", noise_mm, 0, 1000, "mm", "standard deviation of a frame's position along each axis");
+  set.add("track_noise", noise_mm, 0, 1000, "mm", "standard deviation of a frame's position along x and y");
   set.add("track_angle_noise", noise_deg, 0, 180, "degrees", "standard deviation of a frame's rotation about z");
   set.add("track_dropout", dropout, 0, 1, "", "probability that a sighting of an object is missing");
   return set;
@@ -35,23 +26,19 @@ void VirtualTracker::publish(const std::vector<sim::Instance>& instances, sim::I
   std::vector<geometry_msgs::TransformStamped> transforms;
   std::map<int, int> counts;
   core::Random random(seed_, {kTrackerStream, sightings_++});
+  const std::vector<sim::Instance> seen = sim::asTracked(instances, {options_.noise_mm, options_.noise_deg}, random);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const int number = ++counts[instances[i].item];
     const double dropped = random.uniform();
-    sim::Instance seen = instances[i];
-    seen.x += 1e-3 * options_.noise_mm * normal(random);
-    seen.y += 1e-3 * options_.noise_mm * normal(random);
-    seen.theta += options_.noise_deg * M_PI / 180 * normal(random);
-    const double z_error = 1e-3 * options_.noise_mm * normal(random);
     if (!(present >> i & 1) || dropped < options_.dropout) continue;
-    const geometry_msgs::Pose pose = poseMessage(sim::worldFromObject(world_, seen));
+    const geometry_msgs::Pose pose = poseMessage(sim::worldFromObject(world_, seen[i]));
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = ::ros::Time::now();
     transform.header.frame_id = world_.rig.worldFrame();
     transform.child_frame_id = world_.objects.vocabulary().name(instances[i].item) + "_" + std::to_string(number);
     transform.transform.translation.x = pose.position.x;
     transform.transform.translation.y = pose.position.y;
-    transform.transform.translation.z = pose.position.z + z_error;
+    transform.transform.translation.z = pose.position.z;
     transform.transform.rotation = pose.orientation;
     transforms.push_back(transform);
   }

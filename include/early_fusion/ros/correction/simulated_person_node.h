@@ -27,7 +27,6 @@ class SimulatedPersonNode {
   struct Options {
     std::string world;  ///< the simulator's
     learning::SimulatedPerson::Options person;
-    bool confirm = false;
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
@@ -45,7 +44,6 @@ class SimulatedPersonNode {
   ::ros::NodeHandle node_;
   std::shared_ptr<const world::World> world_;
   learning::SimulatedPerson person_;
-  bool confirm_;
   Health health_;
   std::vector<sim::Instance> instances_;  // of the current scene; a simulated one is the same for a whole episode
   std::unique_ptr<sim::ConeTable> cone_;  // of the same
