@@ -27,5 +27,12 @@ TEST(SimulatedPerson, AnotherEpisodeBeginsWithoutErrors) {
   EXPECT_TRUE(person.answer(1, kLabel, Action::kIdle));
 }
 
+TEST(SimulatedPerson, ConfirmsOnlyOptimalActionsAndOnlyIfItIsToldTo) {
+  const SimulatedPerson silent({1, "searching", false}), confirms({1, "searching", true});
+  EXPECT_FALSE(silent.confirms(kLabel, Action::kTiltUp));
+  EXPECT_TRUE(confirms.confirms(kLabel, Action::kTiltUp));
+  EXPECT_FALSE(confirms.confirms(kLabel, Action::kCollect));
+}
+
 }  // namespace
 }  // namespace early_fusion::learning

@@ -102,6 +102,25 @@ TEST(TrackedScene, NamesTheFrameOfAPoseThatIsNotFinite) {
   EXPECT_EQ(errorOf([&] { scene.see(1, kSecond, poseAt(nan, 0, 0)); }), "the pose of frame 'tag_2' is not finite");
 }
 
+TEST(AsTracked, HasErrorsOfTheGivenStandardDeviations) {
+  constexpr int kCount = 10000;
+  const std::vector<Instance> truth(kCount, Instance{1, 0.5, -0.25, 0.5});
+  core::Random random(3);
+  const std::vector<Instance> seen = asTracked(truth, {5, 2}, random);
+  double x = 0, y = 0, theta = 0, x_squared = 0, y_squared = 0, theta_squared = 0;
+  for (const Instance& instance : seen) {
+    const double dx = instance.x - 0.5, dy = instance.y + 0.25, dtheta = instance.theta - 0.5;
+    x += dx / kCount, y += dy / kCount, theta += dtheta / kCount;
+    x_squared += dx * dx / kCount, y_squared += dy * dy / kCount, theta_squared += dtheta * dtheta / kCount;
+    EXPECT_EQ(instance.item, 1);
+  }
+  for (const double mean : {x, y}) EXPECT_NEAR(mean, 0, 3e-4);
+  for (const double square : {x_squared, y_squared}) EXPECT_NEAR(std::sqrt(square), 5e-3, 2e-4);
+  EXPECT_NEAR(theta, 0, 3e-3);
+  EXPECT_NEAR(std::sqrt(theta_squared), 2 * M_PI / 180, 1.5e-3);
+  EXPECT_EQ(asTracked(truth, {}, random), truth);
+}
+
 TEST(NearestOrientation, IsThatOfTheNearestAxisUnlessTheCameraStandsElsewhere) {
   const auto world = world::loadWorld("");
   const world::Orientation orientation{3, 2};
