@@ -96,6 +96,11 @@ void TfSceneNode::ask(const std::string& what) {
 void TfSceneNode::onRequest(const Request& request) {
   watch_.heard(request_subscriber_.getTopic());
   if (!playing_) return health_.count("requests between episodes");
+  if (request.header.stamp < latest_image_) {  // the time has jumped back: what was seen is in the future
+    tracked_ = sim::TrackedScene(tracked_.objects(), world_->objects.vocabulary(), options_.hold_sec);
+    transforms_.forget();
+  }
+  latest_image_ = request.header.stamp;
   asked_ = Asked{request, ::ros::WallTime::now()};
   last_event_ = asked_->came_at;
   picking_ = false;
@@ -107,7 +112,8 @@ void TfSceneNode::onAction(const Action& action) {
   answered_ = action.header.stamp;
   previous_action_ = action.name;
   ++actions_;
-  picking_ = core::picks(core::actionFromName(action.name));
+  picking_ =
+      action.name == core::actionName(core::Action::kCollect) || action.name == core::actionName(core::Action::kRemove);
   last_event_ = ::ros::WallTime::now();
 }
 

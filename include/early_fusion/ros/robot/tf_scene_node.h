@@ -91,7 +91,8 @@ class TfSceneNode {
   std::vector<std::string> outstanding_;  // requested in this episode, and not collected
   int actions_ = 0;
   bool picking_ = false;
-  ::ros::Time answered_;  // the stamp of the last action
+  ::ros::Time latest_image_;  // the stamp of the last request
+  ::ros::Time answered_;      // the stamp of the last action
   std::string previous_action_;
   ::ros::WallTime last_event_;
   std::optional<Asked> asked_;  // waits for its transforms
