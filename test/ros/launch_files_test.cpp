@@ -17,6 +17,7 @@
 #include "early_fusion/ros/policy/policy_node.h"
 #include "early_fusion/ros/robot/pan_tilt_driver_node.h"
 #include "early_fusion/ros/robot/request_node.h"
+#include "early_fusion/ros/robot/tf_scene_node.h"
 #include "early_fusion/ros/simulator/simulator_node.h"
 #include "early_fusion/ros/trainer/evaluator_node.h"
 #include "early_fusion/ros/trainer/session_monitor_node.h"
@@ -47,6 +48,7 @@ const std::vector<core::Option>& optionsOfNode(const std::string& type) {
       {"policy_node", optionsOf<PolicyNode>()},
       {"request_node", optionsOf<RequestNode>()},
       {"session_monitor_node", optionsOf<SessionMonitorNode>()},
+      {"tf_scene_node", optionsOf<TfSceneNode>()},
       {"simulated_person_node", optionsOf<SimulatedPersonNode>()},
       {"simulator_node", optionsOf<SimulatorNode>()},
       {"trainer_node", optionsOf<TrainerNode>()},
@@ -219,7 +221,7 @@ TEST_F(Launch, AValueThatIsNoChoiceEndsItAtOnceAndTheChoicesAreNamed) {
       {"real_camera.launch", {"robot:=Virtual"}, "robot is Virtual; it must be real or virtual"},
       {"real_camera.launch", {"pan_tilt:=maybe"}, "maybe is not a 'bool' type"},
       {"correct.launch", {"output:=/tmp/run", "robot:=real"}, "robot is real; it must be simulator or none"},
-      {"correct.launch", {"output:=/tmp/run", "person:=me"}, "person is me; it must be keyboard, simulated or none"},
+      {"correct.launch", {"output:=/tmp/run", "person:=me"}, "person is me; it must be keyboard, simulated, tracked or none"},
       {"train.launch", {"output:=/tmp/run", "separate:=maybe"}, "maybe is not a 'bool' type"},
       {"view.launch", {"bag:=/tmp/bag", "loop:=maybe"}, "maybe is not a 'bool' type"},
       {"record.launch", {"bag:=/tmp/bag", "annotated:=maybe"}, "maybe is not a 'bool' type"}};
