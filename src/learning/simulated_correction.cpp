@@ -13,7 +13,8 @@ namespace early_fusion::learning {
 namespace {
 
 constexpr char kScores[] = "scores.csv";
-constexpr std::uint64_t kTrackingStream = 104;  // {episode, step}: errors of what the person sees; see core::RandomStream
+constexpr std::uint64_t kTrackingStream =
+    104;  // {episode, step}: errors of what the person sees; see core::RandomStream
 
 /// A policy that knows more items than the world whose episodes it plays, in another order.
 std::unique_ptr<Agent> makeWorldAgent(model::TrainablePolicy& policy, const core::Vocabulary& world_items) {

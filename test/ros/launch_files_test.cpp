@@ -221,7 +221,9 @@ TEST_F(Launch, AValueThatIsNoChoiceEndsItAtOnceAndTheChoicesAreNamed) {
       {"real_camera.launch", {"robot:=Virtual"}, "robot is Virtual; it must be real or virtual"},
       {"real_camera.launch", {"pan_tilt:=maybe"}, "maybe is not a 'bool' type"},
       {"correct.launch", {"output:=/tmp/run", "robot:=real"}, "robot is real; it must be simulator or none"},
-      {"correct.launch", {"output:=/tmp/run", "person:=me"}, "person is me; it must be keyboard, simulated, tracked or none"},
+      {"correct.launch",
+       {"output:=/tmp/run", "person:=me"},
+       "person is me; it must be keyboard, simulated, tracked or none"},
       {"train.launch", {"output:=/tmp/run", "separate:=maybe"}, "maybe is not a 'bool' type"},
       {"view.launch", {"bag:=/tmp/bag", "loop:=maybe"}, "maybe is not a 'bool' type"},
       {"record.launch", {"bag:=/tmp/bag", "annotated:=maybe"}, "maybe is not a 'bool' type"}};
