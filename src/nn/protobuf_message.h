@@ -43,7 +43,7 @@ class ProtobufMessage {
 
   /// Seven bits a byte, the lowest first. The top bit says that another byte follows.
   void addVarint(std::uint64_t value) {
-    for (; value >= 128; value >>= 7) bytes_ += static_cast<char>(value & 127 | 128);
+    for (; value >= 128; value >>= 7) bytes_ += static_cast<char>((value & 127) | 128);
     bytes_ += static_cast<char>(value);
   }
 
