@@ -20,6 +20,7 @@ struct EvaluateOptions {
   std::string policy;
   std::string task = "simple";
   std::string world;
+  std::string randomisation = "none";
   int episodes = 500;
   std::uint64_t seed = learning::kHeldOutSeed;
   std::string json;
@@ -47,6 +48,8 @@ core::OptionSet EvaluateOptions::options() {
                 "one; the pairs are those that were held out from the training of the weights file");
   set.include(split.options());
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
+  set.add("randomisation", randomisation,
+          "how the episodes look: NAME of config/randomisation/NAME.yaml, or a YAML file");
   return set;
 }
 
@@ -63,7 +66,9 @@ sim::Task chosenTask(const EvaluateOptions& options, const core::GivenOptions& g
   for (const auto& [name, value] : given) {
     if (set.has(name)) set.set(name, value, "command line");
   }
-  return sim::withPairs(options.pairs, split, sim::loadTask(options.task));
+  sim::Task task = sim::loadTask(options.task);
+  task.randomisation = sim::loadRandomisation(options.randomisation);
+  return sim::withPairs(options.pairs, split, task);
 }
 
 void evaluate(const core::GivenOptions& given) {

@@ -53,8 +53,8 @@ std::optional<model::Box> boxAround(const world::World& world, const sim::Instan
 
 std::vector<model::Box> boxesAroundRequested(const world::World& world, const PlayedStep& step, int size) {
   std::vector<model::Box> boxes;
-  for (std::size_t i = 0; i < step.instances.size(); ++i) {
-    const sim::Instance& instance = step.instances[i];
+  for (std::size_t i = 0; i < step.setup.instances.size(); ++i) {
+    const sim::Instance& instance = step.setup.instances[i];
     const core::Request& request = step.state.request;
     const bool requested = std::find(request.begin(), request.end(), instance.item) != request.end();
     if (!requested || (step.state.present >> i & 1u) == 0) continue;
@@ -66,7 +66,8 @@ std::vector<model::Box> boxesAroundRequested(const world::World& world, const Pl
 core::Image draw(render::Rasterizer& rasterizer, const world::World& world, const PlayedStep& step,
                  const ImageStyle& style) {
   core::Image image;
-  rasterizer.setObjects(sim::presentObjects(world, step.instances, step.state.present));
+  rasterizer.setAppearance(step.setup.appearance);
+  rasterizer.setObjects(sim::presentObjects(world, step.setup.instances, step.state.present));
   rasterizer.render(world.rig.worldFromCamera(step.state.orientation), image);
   model::Annotation annotation;
   if (style.annotate) {
@@ -127,7 +128,7 @@ core::Image drawObjects(const world::World& world, const ImageStyle& style) {
     PlayedStep step;
     const double x = 0.5 * (world.placement.min_x + world.placement.max_x);
     const double y = 0.5 * (world.placement.min_y + world.placement.max_y);
-    step.instances = {{item, x, y, 0.6}};
+    step.setup.instances = {{item, x, y, 0.6}};
     step.state.present = 1;
     step.state.orientation = aimAt(world, {x, y, world.placement.z + 0.06});
     core::Image image = draw(rasterizer, world, step, {style.size, style.scale, false});

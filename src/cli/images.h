@@ -12,7 +12,7 @@ namespace early_fusion::cli {
 
 /// One step of an episode that was played.
 struct PlayedStep {
-  std::vector<sim::Instance> instances;
+  sim::EpisodeSetup setup;
   sim::EpisodeState state;
   core::Action action;
   core::Action expert_action;

@@ -23,6 +23,7 @@ struct RenderOptions {
   std::string policy = "expert";
   std::string attend;
   std::string world;
+  std::string randomisation = "none";
   std::uint64_t seed = learning::kHeldOutSeed;
   std::uint64_t episode = 0;
   int step = 0;
@@ -51,6 +52,8 @@ core::OptionSet RenderOptions::options() {
           "add the crosshair circle, boxes around the requested objects, the request, the action and the policy's "
           "attention map");
   set.add("world", world, "a world's YAML file; empty: config/world.yaml of the package");
+  set.add("randomisation", randomisation,
+          "how the world looks: NAME of config/randomisation/NAME.yaml, or a YAML file");
   set.add("out", out, "the PNG file to write; with --image steps, the folder for step_00.png, step_01.png and so on");
   return set;
 }
@@ -91,7 +94,7 @@ std::vector<PlayedStep> play(const RenderOptions& options, const world::World& w
   std::vector<PlayedStep> played;
   learning::RolloutRunner runner(world, task, options.seed);
   runner.setObserver([&](std::uint64_t, const sim::Episode& before, const learning::TrajectoryStep& step) {
-    played.push_back({before.setup().instances, before.state(), step.action, step.label.action, std::nullopt});
+    played.push_back({before.setup(), before.state(), step.action, step.label.action, std::nullopt});
   });
   const bool may_attend = options.annotate && shown != nullptr;
   runner.run(options.episode, 1, *named.agent, may_attend, [&](const learning::Trajectory& trajectory) {
@@ -126,7 +129,8 @@ core::Image draw(const RenderOptions& options, const world::World& world, const 
 }
 
 void render(const RenderOptions& options) {
-  const sim::Task task = sim::loadTask(options.task);
+  sim::Task task = sim::loadTask(options.task);
+  task.randomisation = sim::loadRandomisation(options.randomisation);
   if (options.step >= task.steps) {
     throw core::Error("--step: " + std::to_string(options.step) + " is after the task's last step, " +
                       std::to_string(task.steps - 1));

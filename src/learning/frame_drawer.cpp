@@ -12,6 +12,7 @@ namespace {
 SharedFrame drawFrame(const world::World& world, const FrameOfTrajectory& frame, render::Rasterizer& rasterizer) {
   const TrajectoryStep& step = frame.trajectory->steps[frame.step];
   core::Image image;
+  rasterizer.setAppearance(frame.trajectory->appearance);
   rasterizer.setObjects(sim::presentObjects(world, frame.trajectory->instances, step.present));
   rasterizer.render(world.rig.worldFromCamera(step.orientation), image);
   return std::make_shared<const std::vector<std::uint8_t>>(std::move(image.rgb));

@@ -68,6 +68,7 @@ std::vector<std::unique_ptr<RolloutRunner::LockstepEpisode>> RolloutRunner::begi
 void RolloutRunner::observe(LockstepEpisode& one, bool draw) {
   const sim::EpisodeState& state = one.episode.state();
   if (draw) {
+    one.rasterizer.setAppearance(one.episode.setup().appearance);
     one.rasterizer.setObjects(sim::presentObjects(world_, one.episode.setup().instances, state.present));
     one.rasterizer.render(world_.rig.worldFromCamera(state.orientation), one.image);
   }

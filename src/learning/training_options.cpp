@@ -19,6 +19,10 @@ void addRounds(TrainingOptions& options, core::OptionSet& set) {
       "each training episode draws its number of objects from the task's number to this one; held-out episodes have "
       "the task's number; 0: as the task");
   set.include(options.pairs.options());
+  set.add(
+      "randomisation", options.randomisation,
+      "how the training episodes look: NAME of config/randomisation/NAME.yaml, or a YAML file; held-out episodes look "
+      "as the world's files say");
   set.add("trajectories_per_round", options.trajectories_per_round, 1, 100000, "trajectories",
           "new trajectories before the policy is trained on the window");
   set.add("window", options.window, 0, 100000, "trajectories",

@@ -27,9 +27,10 @@ constexpr char kWeights[] = "weights.safetensors";
 constexpr char kResult[] = "result.json";
 constexpr std::array kFiles = {kCheckpoint, kCurveFile, kScores, kOptionsFile, kWeights, kResult};
 // Keys of a checkpoint's metadata.
-constexpr char kOptions[] = "session.options";  // learningOptions() as YAML
-constexpr char kTask[] = "session.task";        // sim::Task as YAML
-constexpr char kWorld[] = "session.world";      // world::WorldOptions as YAML
+constexpr char kOptions[] = "session.options";              // learningOptions() as YAML
+constexpr char kTask[] = "session.task";                    // sim::Task as YAML
+constexpr char kWorld[] = "session.world";                  // world::WorldOptions as YAML
+constexpr char kRandomisation[] = "session.randomisation";  // sim::Randomisation as YAML
 constexpr char kElapsed[] = "session.elapsed_sec";
 constexpr char kCurve[] = "session.curve";  // curve.csv
 
@@ -44,9 +45,12 @@ std::string learningOptions(SessionOptions options) {
 }
 
 /// The settings that must be the same when a session is resumed: YAML texts by their metadata keys.
-std::array<std::pair<const char*, std::string>, 3> settings(const SessionOptions& options, sim::Task task,
+std::array<std::pair<const char*, std::string>, 4> settings(const SessionOptions& options, sim::Task task,
                                                             world::WorldOptions world) {
-  return {{{kOptions, learningOptions(options)}, {kTask, task.options().toYaml()}, {kWorld, world.options().toYaml()}}};
+  return {{{kOptions, learningOptions(options)},
+           {kTask, task.options().toYaml()},
+           {kWorld, world.options().toYaml()},
+           {kRandomisation, sim::loadRandomisation(options.training.randomisation).options().toYaml()}}};
 }
 
 using Settings = std::map<std::string, std::string>;
@@ -89,6 +93,7 @@ double parseSeconds(const std::string& text, const std::string& source) {
 
 /// The task of the training episodes. @throws Error if the options do not fit the task.
 sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
+  task.randomisation = sim::loadRandomisation(options.randomisation);
   return sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
                         sim::withUpTo(options.max_instances, std::move(task)));
 }

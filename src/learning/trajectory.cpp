@@ -44,6 +44,7 @@ TrajectoryRecorder::TrajectoryRecorder(const sim::EpisodeKey& key, const sim::Ep
       training_expert_(training_expert) {
   trajectory_.episode = key.number;
   trajectory_.instances = episode.setup().instances;
+  trajectory_.appearance = episode.setup().appearance;
 }
 
 const TrajectoryStep& TrajectoryRecorder::record(const sim::EpisodeState& state, std::vector<std::uint8_t> frame) {

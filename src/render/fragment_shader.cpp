@@ -11,8 +11,7 @@ using ThreeLanes = std::array<FloatLanes, 3>;
 using HalfLanes __attribute__((vector_size(4 * kLanes))) = std::uint16_t;
 
 constexpr float kAmbient = 0.40f;
-constexpr float kAmbientFromAbove =
-    0.08f;  // is added on surfaces that face up and subtracted on surfaces that face down
+constexpr float kAmbientFromAbove = 0.08f;
 constexpr float kDiffuse = 0.72f;
 constexpr int kGlossDoublings = 5;  // exponent 2^5 of the highlight
 constexpr float kTiny = 1e-20f;     // avoids a division by zero if a normal has length 0
@@ -92,10 +91,10 @@ TwoColors sampleTextures(const std::uint32_t* texels, IntLanes first_texel, IntL
 }
 
 /// Blinn and Phong's highlight.
-FloatLanes highlight(const ThreeLanes& normal, const ThreeLanes& ray) {
+FloatLanes highlight(const ThreeLanes& normal, const ThreeLanes& ray, const float (&towards_light)[3]) {
   const ThreeLanes towards = normalized(ray);
   ThreeLanes half;
-  for (int i = 0; i < 3; ++i) half[i] = kTowardsLight[i] - towards[i];
+  for (int i = 0; i < 3; ++i) half[i] = towards_light[i] - towards[i];
   FloatLanes shine = highest(dot(normal, normalized(half)), FloatLanes{});
   for (int i = 0; i < kGlossDoublings; ++i) shine *= shine;
   return shine;
@@ -103,10 +102,23 @@ FloatLanes highlight(const ThreeLanes& normal, const ThreeLanes& ray) {
 
 }  // namespace
 
+Light lightOf(const world::Appearance& appearance) {
+  Light light;
+  for (int i = 0; i < 3; ++i) {
+    light.towards[i] = appearance.towards_light[i];
+    light.direct[i] = kDiffuse * appearance.direct_light[i];
+    light.ambient[i] = kAmbient * appearance.ambient_light[i];
+    light.from_above[i] = kAmbientFromAbove * appearance.ambient_light[i];
+  }
+  return light;
+}
+
 FragmentShader::FragmentShader(const RenderAssets& assets, const ShadowMap& shadow_map, int image_size)
     : assets_(assets),
       image_size_(image_size),
       shadow_map_(shadow_map),
+      light_(lightOf({})),
+      materials_(assets.materials.data()),
       mixed_offset_(image_size * SampleBuffer::kPixelsDown + 1),
       mixed_place_(mixed_offset_.size()),
       sums_(static_cast<std::size_t>(image_size) * image_size) {}
@@ -222,31 +234,33 @@ IntLanes FragmentShader::color(const Attributes& at) const {
     ray[i] = row[0] * camera_x + row[1] * camera_y + row[2];
     point[i] = ray[i] * at.w + viewpoint_.world_from_camera.translation[i];
   }
-  FloatLanes direct = highest(dot(normal, kTowardsLight), FloatLanes{});
+  FloatLanes direct = highest(dot(normal, light_.towards), FloatLanes{});
   const IntLanes faces_light = direct > 0.f;
   const FloatLanes lit = shadow_map_.lit(point, normal, faces_light);
   direct *= lit;
 
-  static_assert(sizeof(Material) == 4 * sizeof(float));
-  const IntLanes material = at.material * 4;
-  const IntLanes full_size = gather<IntLanes>(&assets_.materials[0].size, material);
-  const FloatLanes edge = toFloat(full_size);
+  const IntLanes material = at.material * 8;
+  const auto ofMaterial = [&](const float* value) { return gather<FloatLanes>(value, material); };
+  const IntLanes full_size = gather<IntLanes>(&materials_[0].size, material);
+  const FloatLanes repetitions = ofMaterial(&materials_[0].repetitions);
+  const FloatLanes edge = toFloat(full_size) * repetitions;
   const IntLanes level = mipLevel(at.texture_scale * (at.w * at.w * at.w) * (edge * edge));
   const TwoColors texture =
-      sampleTextures(assets_.texels.data(), gather<IntLanes>(&assets_.materials[0].first_texel, material),
-                     highest(full_size >> level, allLanes(1)), at.u, at.v);
+      sampleTextures(assets_.texels.data(), gather<IntLanes>(&materials_[0].first_texel, material),
+                     highest(full_size >> level, allLanes(1)), at.u * repetitions, at.v * repetitions);
 
-  const FloatLanes gain = (kAmbient + kAmbientFromAbove * normal[2] + kDiffuse * direct) * (1.f / 256.f);
   FloatLanes white = allLanes(0.5f);  // rounds to the nearest
-  const FloatLanes specular = gather<FloatLanes>(&assets_.materials[0].specular, material);
+  const FloatLanes specular = ofMaterial(&materials_[0].specular);
   if (maskBits(specular > 0.f) != 0) {
-    white += select(faces_light, highlight(normal, ray) * lit, FloatLanes{}) * specular * 255.f;
+    white += select(faces_light, highlight(normal, ray, light_.towards) * lit, FloatLanes{}) * specular * 255.f;
   }
-  const auto channel = [&](UnsignedLanes value) {
+  const auto channel = [&](int c, UnsignedLanes value) {
+    const FloatLanes light = light_.ambient[c] + light_.from_above[c] * normal[2] + light_.direct[c] * direct;
+    const FloatLanes gain = light * (1.f / 256.f) * ofMaterial(&materials_[0].color[c]);
     return truncate(lowest(toFloat(toSigned(value & 0xffff)) * gain + white, allLanes(255.f)));
   };
-  return channel(texture.red_blue) | channel(texture.green_alpha) << kSumBits |
-         channel(texture.red_blue >> 16) << (2 * kSumBits);
+  return channel(0, texture.red_blue) | channel(1, texture.green_alpha) << kSumBits |
+         channel(2, texture.red_blue >> 16) << (2 * kSumBits);
 }
 
 void FragmentShader::writeMeans(core::Image& image) const {

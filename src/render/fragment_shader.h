@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "early_fusion/core/image.h"
+#include "early_fusion/world/appearance.h"
 #include "mesh_drawer.h"
 #include "render_assets.h"
 #include "sample_buffer.h"
@@ -19,11 +20,28 @@ struct Viewpoint {
   float centre;        ///< x and y of the principal point [subsamples]
 };
 
+/// One light that is far away, and ambient light. Each number is for red, green and blue.
+struct Light {
+  float towards[3];     ///< unit length, world frame
+  float direct[3];      ///< of a surface that faces the light
+  float ambient[3];     ///< of an upright surface
+  float from_above[3];  ///< is added on surfaces that face up and subtracted on surfaces that face down
+};
+
+/// The light of the world file's look, times the look's factors.
+Light lightOf(const world::Appearance& appearance);
+
 /// Shades fragments, several at a time, and adds them up to pixels. A fragment is the part of a pixel that one triangle
 /// covers.
 class FragmentShader {
  public:
   FragmentShader(const RenderAssets& assets, const ShadowMap& shadow_map, int image_size);
+
+  /// @param materials as in RenderAssets; must stay valid.
+  void setLook(const Light& light, const Material* materials) {
+    light_ = light;
+    materials_ = materials;
+  }
 
   /// Sets every pixel to the mean of its four samples, which show triangles of `drawer` or nothing (id 0).
   void shade(const Viewpoint& viewpoint, const MeshDrawer& drawer, const SampleBuffer& samples, core::Image& image);
@@ -71,6 +89,8 @@ class FragmentShader {
   const RenderAssets& assets_;
   int image_size_;
   const ShadowMap& shadow_map_;
+  Light light_;
+  const Material* materials_;
   Viewpoint viewpoint_;
   const ShadingVertex* vertices_ = nullptr;
   const VisibleTriangle* triangles_ = nullptr;

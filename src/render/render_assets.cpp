@@ -7,6 +7,9 @@
 #include <mutex>
 #include <numeric>
 
+#include "early_fusion/world/appearance.h"
+#include "procedural_texture.h"
+
 namespace early_fusion::render {
 
 namespace {
@@ -138,6 +141,60 @@ RenderMesh makeMesh(const Soup& soup, const Triangle* first, const Triangle* las
   return mesh;
 }
 
+RenderMesh makeMesh(const Soup& soup) {
+  return makeMesh(soup, soup.triangles.data(), soup.triangles.data() + soup.triangles.size());
+}
+
+void addProceduralMaterials(RenderAssets& assets) {
+  assets.first_procedural_material = static_cast<std::int32_t>(assets.materials.size());
+  for (int number = 0; number < world::kProceduralTextures; ++number) {
+    world::MeshPart part;
+    part.texture = proceduralTexture(number);
+    addMaterial(assets, part);
+  }
+}
+
+/// A flat face, counter-clockwise seen from outside, as a fan of triangles.
+void addFace(Soup& soup, const std::vector<Eigen::Vector3f>& corners, const Eigen::Vector3f& normal,
+             std::int32_t material) {
+  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+  const Eigen::Vector3f u = (corners[1] - corners[0]).normalized(), v = normal.cross(u);
+  for (const Eigen::Vector3f& corner : corners)
+    soup.vertices.push_back({corner, normal, {corner.dot(u), corner.dot(v)}});
+  for (std::uint32_t i = 2; i < corners.size(); ++i) {
+    soup.triangles.push_back({{first, first + i - 1, first + i}, material});
+  }
+}
+
+/// An upright prism on z = 0 with height 1 and a regular polygon of `sides` corners as its base.
+RenderMesh prism(int sides, float radius, float first_angle, std::int32_t material) {
+  Soup soup;
+  std::vector<Eigen::Vector3f> base, top;
+  for (int i = 0; i < sides; ++i) {
+    const float angle = first_angle + static_cast<float>(2 * EIGEN_PI * i / sides);
+    base.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.f);
+    top.push_back(base.back() + Eigen::Vector3f::UnitZ());
+  }
+  addFace(soup, top, Eigen::Vector3f::UnitZ(), material);
+  for (int i = 0; i < sides; ++i) {
+    const int next = (i + 1) % sides;
+    const Eigen::Vector3f normal = (base[i] + base[next]).normalized();
+    addFace(soup, {base[i], base[next], top[next], top[i]}, normal, material);
+  }
+  return makeMesh(soup);
+}
+
+void addDistractors(RenderAssets& assets) {
+  constexpr int kCylinderSides = 16;
+  assets.first_distractor_material = static_cast<std::int32_t>(assets.materials.size());
+  for (int i = 0; i < kMaxDistractors; ++i) {
+    const auto material = static_cast<std::int32_t>(assets.materials.size());
+    assets.materials.push_back(assets.materials[assets.first_procedural_material]);
+    assets.boxes.push_back(prism(4, std::sqrt(0.5f), static_cast<float>(EIGEN_PI / 4), material));
+    assets.cylinders.push_back(prism(kCylinderSides, 0.5f, 0.f, material));
+  }
+}
+
 /// Halves the triangles [first, last) along the longest side of their box until they are few enough.
 void addClusters(Soup& soup, Triangle* first, Triangle* last, std::vector<RenderMesh>& clusters) {
   if (first == last) return;
@@ -169,14 +226,17 @@ std::shared_ptr<const RenderAssets> makeRenderAssets(const world::World& world) 
   const RenderPose identity = renderPose(Eigen::Isometry3d::Identity());
   for (int item = 0; item < world.objects.size(); ++item) {
     Soup soup;
+    assets->first_object_material.push_back(static_cast<std::int32_t>(assets->materials.size()));
     addMesh(soup, *assets, world.objects[item].mesh, identity);
-    const Triangle* triangles = soup.triangles.data();
-    assets->objects.push_back(makeMesh(soup, triangles, triangles + soup.triangles.size()));
+    assets->objects.push_back(makeMesh(soup));
   }
+  assets->first_object_material.push_back(static_cast<std::int32_t>(assets->materials.size()));
   Soup soup;
   for (const world::FixedMesh& fixed : world.kitchen)
     addMesh(soup, *assets, fixed.mesh, renderPose(fixed.world_from_mesh));
   addClusters(soup, soup.triangles.data(), soup.triangles.data() + soup.triangles.size(), assets->kitchen);
+  addProceduralMaterials(*assets);
+  addDistractors(*assets);
   return assets;
 }
 

@@ -11,12 +11,15 @@
 
 namespace early_fusion::render {
 
-/// A texture with its mip levels, and its specular strength.
-struct alignas(16) Material {
+/// A texture with its mip levels, its specular strength, and how an episode's look changes it.
+struct alignas(32) Material {
   std::int32_t first_texel = 0;  ///< into RenderAssets::texels: levels from 1x1 up, row-major, 0xAABBGGRR
   std::int32_t size = 1;         ///< edge of the largest level [texels], a power of two
   float specular = 0.f;
+  float repetitions = 1.f;  ///< of the texture where a mesh asks for one
+  float color[3] = {1.f, 1.f, 1.f};
 };
+static_assert(sizeof(Material) == 8 * sizeof(float));
 
 /// A mesh in the rasterizer's layout: one array for each coordinate, padded to whole lanes.
 struct RenderMesh {
@@ -41,12 +44,19 @@ struct RenderPose {
 
 RenderPose renderPose(const Eigen::Isometry3d& pose);
 
+/// The maximum number of distractors that an image shows.
+inline constexpr int kMaxDistractors = 16;
+
 /// Meshes, textures and materials that the rasterizers of one World share. Immutable.
 struct RenderAssets {
   std::vector<std::uint32_t> texels;
   std::vector<Material> materials;
   std::vector<RenderMesh> objects;  ///< by item, in the object's frame
   std::vector<RenderMesh> kitchen;  ///< in the world frame, cut into compact clusters that are culled one by one
+  std::vector<std::int32_t> first_object_material;  ///< by item, and at the end the first material of the kitchen
+  std::int32_t first_procedural_material = 0;       ///< after the kitchen's; world::kProceduralTextures of them
+  std::int32_t first_distractor_material = 0;       ///< one for each of kMaxDistractors
+  std::vector<RenderMesh> boxes, cylinders;  ///< 1 m in size, on z = 0; the k-th has the k-th distractor's material
 };
 
 /// The assets of `world`, which must outlive them. The first rasterizer of a World creates them, and the others share

@@ -19,12 +19,18 @@ constexpr int kFilterSize = kBoxSize + 1;  // [texels] that a box touches if it 
 constexpr float kOffset = 2.25f;
 constexpr float kNothing = -std::numeric_limits<float>::max();
 
-struct Box {
-  double low[3], high[3];
-};
+int texelsFor(double half_extent, double texel_size) {
+  const int texels = static_cast<int>(std::ceil(2 * half_extent / texel_size)) + 2 * kMargin;
+  return (texels + kCellSize - 1) / kCellSize * kCellSize;
+}
 
-/// The box of all places where a part of an object can be, in the world [m].
-Box casterBox(const world::World& world) {
+FloatLanes evaluate(const LinearForm& form, const std::array<FloatLanes, 3>& p) {
+  return form.factor[0] * p[0] + form.factor[1] * p[1] + form.factor[2] * p[2] + form.constant;
+}
+
+}  // namespace
+
+ShadowMap::Box ShadowMap::casterBox(const world::World& world) {
   double radius = 0.01, height = 0.01;
   for (int item = 0; item < world.objects.size(); ++item) {
     for (const world::MeshPart& part : world.objects[item].mesh.parts) {
@@ -41,14 +47,14 @@ Box casterBox(const world::World& world) {
 }
 
 /// Largest distance of the box's corners from its centre along an axis.
-double extent(const Box& box, const double (&axis)[3]) {
+double ShadowMap::extent(const Box& box, const double (&axis)[3]) {
   double sum = 0;
   for (int i = 0; i < 3; ++i) sum += 0.5 * (box.high[i] - box.low[i]) * std::fabs(axis[i]);
   return sum;
 }
 
 /// scale * axis . (point - centre of the box)
-LinearForm along(const double (&axis)[3], double scale, const Box& box) {
+LinearForm ShadowMap::along(const double (&axis)[3], double scale, const Box& box) {
   LinearForm form{{0.f, 0.f, 0.f}, 0.f};
   double constant = 0;
   for (int i = 0; i < 3; ++i) {
@@ -59,35 +65,26 @@ LinearForm along(const double (&axis)[3], double scale, const Box& box) {
   return form;
 }
 
-int texelsFor(double half_extent, double texel_size) {
-  const int texels = static_cast<int>(std::ceil(2 * half_extent / texel_size)) + 2 * kMargin;
-  return (texels + kCellSize - 1) / kCellSize * kCellSize;
-}
+ShadowMap::ShadowMap(const world::World& world) : box_(casterBox(world)) { setLight(world::kTowardsLight); }
 
-FloatLanes evaluate(const LinearForm& form, const std::array<FloatLanes, 3>& p) {
-  return form.factor[0] * p[0] + form.factor[1] * p[1] + form.factor[2] * p[2] + form.constant;
-}
-
-}  // namespace
-
-ShadowMap::ShadowMap(const world::World& world) {
-  const double light[3] = {kTowardsLight[0], kTowardsLight[1], kTowardsLight[2]};
+void ShadowMap::setLight(const std::array<float, 3>& towards_light) {
+  const double light[3] = {towards_light[0], towards_light[1], towards_light[2]};
   const double length = std::sqrt(light[0] * light[0] + light[2] * light[2]);
   const double right[3] = {light[2] / length, 0, -light[0] / length};
   const double up[3] = {light[1] * right[2], light[2] * right[0] - light[0] * right[2], -light[1] * right[0]};
-  const Box box = casterBox(world);
-  const double half_width = extent(box, right), half_height = extent(box, up);
+  const double half_width = extent(box_, right), half_height = extent(box_, up);
   const double texel_size = 2 * std::max(half_width, half_height) / kLongSide;
   texel_size_ = static_cast<float>(texel_size);
   width_ = texelsFor(half_width, texel_size);
   height_ = texelsFor(half_height, texel_size);
   projection_.perspective = false;
-  projection_.x = along(right, kSubsamples / texel_size, box);
-  projection_.y = along(up, kSubsamples / texel_size, box);
+  projection_.x = along(right, kSubsamples / texel_size, box_);
+  projection_.y = along(up, kSubsamples / texel_size, box_);
   projection_.w = {{0.f, 0.f, 0.f}, 1.f};
-  projection_.depth = along(light, 1.0, box);
+  projection_.depth = along(light, 1.0, box_);
   projection_.half_width = 0.5f * kSubsamples * width_;
   projection_.half_height = 0.5f * kSubsamples * height_;
+  buffer_.clear();
   buffer_.emplace_back(width_, height_, false);
   draw({});
 }

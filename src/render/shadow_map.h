@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "early_fusion/world/appearance.h"
 #include "mesh_drawer.h"
 #include "projection.h"
 #include "render_assets.h"
@@ -10,15 +11,15 @@
 
 namespace early_fusion::render {
 
-/// Towards the light, unit length, world frame: up, to the left (+y) and in front of the counter (-x), so that shadows
-/// fall away from the camera, to the right.
-inline constexpr float kTowardsLight[3] = {-0.400964f, 0.360867f, 0.842023f};
-
 /// The shadows of the objects on the counter. The light is far away (orthographic). The map covers every place where an
 /// object can stand, so a point outside it is lit.
 class ShadowMap {
  public:
+  /// Everything is lit until the first draw().
   explicit ShadowMap(const world::World& world);
+
+  /// Everything is lit until the next draw(). @param towards_light unit length, world frame; its z is positive.
+  void setLight(const std::array<float, 3>& towards_light);
 
   struct Caster {
     const RenderMesh* mesh;
@@ -34,9 +35,18 @@ class ShadowMap {
                  IntLanes needed) const;
 
  private:
+  /// In the world [m].
+  struct Box {
+    double low[3], high[3];
+  };
+
+  static Box casterBox(const world::World& world);
+  static double extent(const Box& box, const double (&axis)[3]);
+  static LinearForm along(const double (&axis)[3], double scale, const Box& box);
   void summarise();
   FloatLanes filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y, FloatLanes depth) const;
 
+  Box box_;  // all places where a part of an object can be
   Projection projection_;
   float texel_size_ = 0;  // [m]
   int width_ = 0;         // [texels]; a cell has kCellSize x kCellSize texels

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "early_fusion/core/error.h"
+#include "early_fusion/sim/drawn_appearance.h"
 #include "early_fusion/world/placed_hull.h"
 
 namespace early_fusion::sim {
@@ -177,7 +178,9 @@ EpisodeSetup sampleEpisodeOf(const world::World& world, const std::vector<int>& 
 
 EpisodeSetup sampleEpisode(const world::World& world, const EpisodeKey& key) {
   core::Random random(key.seed, {core::kEpisodeStream, key.number});
-  return sampleEpisode(world, key.task, random);
+  EpisodeSetup setup = sampleEpisode(world, key.task, random);
+  setup.appearance = drawAppearance(world, key.task.randomisation, setup.instances, key.seed, key.number);
+  return setup;
 }
 
 }  // namespace early_fusion::sim

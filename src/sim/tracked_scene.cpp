@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -76,6 +77,13 @@ void TrackedScene::see(int object, std::int64_t stamp_ns, const Eigen::Isometry3
 }
 
 void TrackedScene::take(int object, std::int64_t stamp_ns) { tracks_[object].taken_ns = stamp_ns; }
+
+void TrackedScene::forgetStamps() {
+  for (Track& track : tracks_) {
+    track.seen_ns.reset();
+    if (track.taken_ns) track.taken_ns = std::numeric_limits<std::int64_t>::min();
+  }
+}
 
 InstanceMask TrackedScene::present(std::int64_t stamp_ns) const {
   InstanceMask mask = 0;

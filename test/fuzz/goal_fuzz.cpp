@@ -21,6 +21,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   goal.pairs = input.text();
   goal.held_out_pairs = input.number<double>();
   goal.held_out_pairs_seed = input.number<std::uint64_t>();
+  goal.randomisation = input.text();
   goal.seed = input.number<std::uint64_t>();
   goal.first_episode = input.number<std::uint64_t>();
   goal.expert_share = input.number<double>();

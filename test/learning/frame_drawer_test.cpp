@@ -9,10 +9,11 @@
 namespace early_fusion::learning {
 namespace {
 
-TEST(FrameDrawer, DrawsTheFramesOfARolloutAgainInAnyOrderWithAnyNumberOfThreads) {
+void drawsTheFramesOfARolloutAgain(const std::string& randomisation) {
   const std::shared_ptr<const world::World> world = world::loadWorld("");
   sim::Task task = sim::loadTask("medium");
   task.steps = 16;
+  task.randomisation = sim::loadRandomisation(randomisation);
   std::vector<Trajectory> trajectories;
   RolloutRunner(*world, task, 5).run(0, 3, *makeExpertAgent(), true, [&](Trajectory trajectory) {
     trajectories.push_back(std::move(trajectory));
@@ -38,6 +39,12 @@ TEST(FrameDrawer, DrawsTheFramesOfARolloutAgainInAnyOrderWithAnyNumberOfThreads)
   }
   omp_set_num_threads(threads);
 }
+
+TEST(FrameDrawer, DrawsTheFramesOfARolloutAgainInAnyOrderWithAnyNumberOfThreads) {
+  drawsTheFramesOfARolloutAgain("none");
+}
+
+TEST(FrameDrawer, AlsoWithEpisodesThatLookDifferent) { drawsTheFramesOfARolloutAgain("real_camera"); }
 
 // Other bits mean another simulator: weights and scores that were published could not be reproduced with it.
 TEST(FrameDrawer, TheShippedWorldLooksTheSameOnEveryPlatform) {

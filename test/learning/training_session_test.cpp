@@ -122,6 +122,36 @@ TEST_F(TrainingSessionTest, StartsFromGivenWeightsAndAlsoResumesBitForBit) {
       << errorOf(wide);
 }
 
+TEST_F(TrainingSessionTest, ARandomisedSessionResumesBitForBitAndRefusesAnotherFilesContents) {
+  const std::string file = folder_ / "noisy.yaml";
+  core::writeFileAtomically(file, "{noise: 5, exposure: 1, kitchen_textures: 1, distractors: 2}");
+  const auto noisy = [&](const std::string& output) {
+    SessionOptions session = options(output);
+    session.training.randomisation = file;
+    return session;
+  };
+  TrainingSession whole(noisy("whole"), world());
+  EXPECT_EQ(whole.trainingTask().randomisation.noise, 5);
+  EXPECT_TRUE(whole.task().randomisation.isNone()) << "held-out episodes look as the world's files say";
+  runSession(whole, [](const Progress&) {});
+  {
+    TrainingSession interrupted(noisy("parts"), world());
+    runTo(interrupted, 6);
+  }
+  SessionOptions again = noisy("parts");
+  again.resume = true;
+  core::writeFileAtomically(file, "{noise: 6, exposure: 1, kitchen_textures: 1, distractors: 2}");
+  EXPECT_NE(errorOf(again).find("the session was started with noise = '5', not '6'"), std::string::npos)
+      << errorOf(again);
+  core::writeFileAtomically(file, "{noise: 5, exposure: 1, kitchen_textures: 1, distractors: 2}");
+  TrainingSession resumed(again, world());
+  runSession(resumed, [](const Progress&) {});
+  EXPECT_TRUE(core::readFile(whole.weightsPath()) == core::readFile(resumed.weightsPath()));
+  TrainingSession plain(options("plain"), world());
+  runSession(plain, [](const Progress&) {});
+  EXPECT_FALSE(core::readFile(whole.weightsPath()) == core::readFile(plain.weightsPath()));
+}
+
 TEST_F(TrainingSessionTest, WeightsSayTheFieldOfViewOfItsWorld) {
   const auto narrow = std::make_shared<world::World>(*world());
   narrow->options.horizontal_fov_deg = 45;

@@ -97,9 +97,10 @@ TEST(PolicyFile, NamesWhatIsWrongWithMetadata) {
       {"actions", R"(["PAN_LEFT","PAN_RIGHT","TILT_UP","TILT_DOWN","COLLECT","REMOVE"])", "\"REMOVE\"]; this version"},
       {"horizontal_fov_deg", "0", "horizontal_fov_deg: '0' is out of range"},
       {"horizontal_fov_deg", "wide", "horizontal_fov_deg: 'wide'"}};
-  for (const auto& [key, value, part] : cases) {
-    const std::string error = loadErrorAfter([&](nn::WeightsFile& file) { file.metadata[key] = value; });
-    EXPECT_NE(error.find(part), std::string::npos) << error;
+  for (const auto& one : cases) {
+    const std::string error =
+        loadErrorAfter([&](nn::WeightsFile& file) { file.metadata[std::get<0>(one)] = std::get<1>(one); });
+    EXPECT_NE(error.find(std::get<2>(one)), std::string::npos) << error;
   }
   for (const char* key : {"format", "kind", "channels", "fusion_block", "spatial_grid", "dropout", "image_size",
                           "vocabulary", "actions", "horizontal_fov_deg"}) {

@@ -20,7 +20,7 @@ struct Axes {
 
 /// The map's: `right` is level in y, as that is how the map lies in the world.
 Axes mapAxes() {
-  const Eigen::Vector3d light(kTowardsLight[0], kTowardsLight[1], kTowardsLight[2]);
+  const Eigen::Vector3d light(world::kTowardsLight[0], world::kTowardsLight[1], world::kTowardsLight[2]);
   const Eigen::Vector3d right = Eigen::Vector3d(light.z(), 0, -light.x()).normalized();
   return {light, right, light.cross(right)};
 }
@@ -65,7 +65,7 @@ class PlateShadow : public testing::Test {
     std::array<FloatLanes, 3> p, normal;
     for (int i = 0; i < 3; ++i) {
       p[i] = allLanes(static_cast<float>(point[i]));
-      normal[i] = allLanes(kTowardsLight[i]);
+      normal[i] = allLanes(world::kTowardsLight[i]);
     }
     return map_.lit(p, normal, allLanes(-1))[0];
   }

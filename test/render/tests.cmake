@@ -1,5 +1,8 @@
+early_fusion_add_test(render appearance_test)
 early_fusion_add_test(render rasterizer_test)
+early_fusion_add_test(render sensor_test)
 early_fusion_add_test(render shadow_map_test)
 early_fusion_add_test(render triangle_fill_test)
+target_include_directories(render_sensor_test PRIVATE ${PROJECT_SOURCE_DIR}/src/render)
 target_include_directories(render_shadow_map_test PRIVATE ${PROJECT_SOURCE_DIR}/src/render)
 target_include_directories(render_triangle_fill_test PRIVATE ${PROJECT_SOURCE_DIR}/src/render)

@@ -96,15 +96,28 @@ TEST_F(ConversionsTest, AGoalNamesItsFirstEpisode) {
   EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("max_instances is 4000000000"), std::string::npos);
 }
 
-TEST_F(ConversionsTest, AGoalNamesTheRequestsOfItsEpisodes) {
+TEST_F(ConversionsTest, AGoalNamesTheRequestsAndTheLookOfItsEpisodes) {
   RunEpisodesGoal goal;
   goal.task = "hard";
   EXPECT_EQ(firstEpisode(goal).task.pairs, sim::PairChoice::kAll);
-  setPairs(sim::withPairs("held_out", {0.25, 4}, sim::loadTask("hard")), goal);
+  setEpisodes(sim::withPairs("held_out", {0.25, 4}, sim::loadTask("hard")), goal);
   const sim::Task task = firstEpisode(goal).task;
   EXPECT_EQ(task.pairs, sim::PairChoice::kHeldOut);
   EXPECT_EQ(task.pair_split.held_out_pairs, 0.25);
   EXPECT_EQ(task.pair_split.held_out_pairs_seed, 4u);
+  EXPECT_TRUE(task.randomisation.isNone());
+  sim::Task noisy = task;
+  noisy.randomisation.noise = 2.5;
+  noisy.randomisation.looks = 3;
+  setEpisodes(noisy, goal);
+  EXPECT_EQ(firstEpisode(goal).task.randomisation.noise, 2.5);
+  EXPECT_EQ(firstEpisode(goal).task.randomisation.looks, 3);
+  goal.randomisation = "{noise: 1e9}";
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("randomisation: noise: '1e9' is out of range"), std::string::npos)
+      << errorOf([&] { firstEpisode(goal); });
+  goal.randomisation = "/etc/shadow";
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }), "");
+  goal.randomisation.clear();
   goal.held_out_pairs = 2;
   EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("held_out_pairs: '2' is out of range"), std::string::npos);
   goal.held_out_pairs = 0.5;

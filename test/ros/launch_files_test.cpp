@@ -221,6 +221,7 @@ TEST_F(Launch, AValueThatIsNoChoiceEndsItAtOnceAndTheChoicesAreNamed) {
       {"real_camera.launch", {"robot:=Virtual"}, "robot is Virtual; it must be real or virtual"},
       {"real_camera.launch", {"pan_tilt:=maybe"}, "maybe is not a 'bool' type"},
       {"correct.launch", {"output:=/tmp/run", "robot:=real"}, "robot is real; it must be simulator or none"},
+      {"correct.launch", {"output:=/tmp/run", "person:=tracked"}, "person:=tracked needs robot:=none"},
       {"correct.launch",
        {"output:=/tmp/run", "person:=me"},
        "person is me; it must be keyboard, simulated, tracked or none"},

@@ -145,6 +145,11 @@ TEST(OptionTables, ExtendingHasEveryKeyOfATaskAndOfAWorld) {
   for (const core::Option& option : optionsOf<world::WorldOptions>()) expectRows(world, option);
 }
 
+TEST(OptionTables, AdaptingHasEveryOptionOfRandomisation) {
+  const Table table = tablesIn(section(document("adapting.md"), "## Domain randomisation"));
+  for (const core::Option& option : optionsOf<sim::Randomisation>()) expectRows(table, option);
+}
+
 TEST(OptionTables, AdaptingHasEveryOptionOfCorrections) {
   const Table table = tablesIn(section(document("adapting.md"), "## Corrections by a person"));
   const std::vector<core::Option> training = optionsOf<learning::TrainingOptions>();
@@ -195,7 +200,7 @@ TEST(OptionTables, HelpTextsArePhrasesWithoutAFullStop) {
         optionsOf<CorrectionNode::Options>(), optionsOf<KeyboardNode::Options>(),
         optionsOf<SimulatedPersonNode::Options>(), optionsOf<TfSceneNode::Options>(),
         optionsOf<CorrectionTrainerNode::Options>(), optionsOf<learning::SimulatedCorrectionOptions>(),
-        optionsOf<sim::Task>(), optionsOf<world::WorldOptions>()}) {
+        optionsOf<sim::Task>(), optionsOf<sim::Randomisation>(), optionsOf<world::WorldOptions>()}) {
     all.insert(all.end(), options.begin(), options.end());
   }
   for (const core::Option& option : all) {

@@ -215,7 +215,7 @@ TEST_F(SessionTest, TwoSessionsOfTwoKindsSideBySideInTheirNamespaces) {
 TEST_F(SessionTest, ADaggerSessionWithAnExpertThatDrivesTrainsTheWeightsOfTheCommandLine) {
   const auto session = launchTraining(
       "dagger", {"options:={expert_share: 0.8, final_expert_share: 0.2, training_expert: searching, window: 0, "
-                 "window_memory: 0, restart_policy: true}"});
+                 "window_memory: 0, restart_policy: true, randomisation: real_camera}"});
   ASSERT_TRUE(session->ends(kSessionSec)) << session->output();
   ASSERT_TRUE(exists("dagger/result.json")) << session->output();
   auto here = given("dagger_here");
@@ -223,7 +223,8 @@ TEST_F(SessionTest, ADaggerSessionWithAnExpertThatDrivesTrainsTheWeightsOfTheCom
                                                       {"final_expert_share", "0.2"},
                                                       {"training_expert", "searching"},
                                                       {"window", "0"},
-                                                      {"restart_policy", "true"}}) {
+                                                      {"restart_policy", "true"},
+                                                      {"randomisation", "real_camera"}}) {
     here.emplace_back(name, value);
   }
   trainHere(here);

@@ -21,8 +21,8 @@ early_fusion_add_test(ros correct_launch_test ${PROJECT_NAME}_child_process)
 target_include_directories(ros_correct_launch_test SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
 
 # A node with a test in the place of its partners: ros/<name>.test and ros/<name>_rostest.cpp.
-foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_node tracked_session virtual_path
-    virtual_robot)
+foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_node tf_scene tracked_session
+    virtual_path virtual_robot)
   if(rostest_FOUND)
     add_rostest_gtest(${name}_rostest ros/${name}.test ros/${name}_rostest.cpp)
     target_include_directories(${name}_rostest PRIVATE ${PROJECT_SOURCE_DIR}/test)
@@ -34,6 +34,7 @@ foreach(name node_parameters pan_tilt_driver policy_node real_camera simulator_n
 endforeach()
 if(rostest_FOUND)
   target_sources(real_camera_rostest PRIVATE ros/real_camera_faults_rostest.cpp)
+  add_rostest(ros/tf_scene_none.test DEPENDENCIES tf_scene_rostest)
   add_rostest(ros/tracked_session_noise.test DEPENDENCIES tracked_session_rostest)
   add_rostest(ros/virtual_path_trajectory.test DEPENDENCIES virtual_path_rostest)
   target_link_libraries(node_parameters_rostest gtest_main)

@@ -1,6 +1,8 @@
 early_fusion_add_test(sim cone_table_test)
+early_fusion_add_test(sim drawn_appearance_test)
 early_fusion_add_test(sim episode_test)
 early_fusion_add_test(sim held_out_pairs_test)
+early_fusion_add_test(sim randomisation_test)
 early_fusion_add_test(sim scene_test)
 early_fusion_add_test(sim silhouette_test)
 early_fusion_add_test(sim task_test)

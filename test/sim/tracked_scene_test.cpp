@@ -160,5 +160,21 @@ TEST(LoadTrackedObjects, NamesFileLineAndValueOfAFault) {
   EXPECT_NE(faultOf("things: []\n").find("needs 'objects'"), std::string::npos);
 }
 
+TEST(TrackedScene, ForgetsItsStampsWhenTheTimeJumpsBackButNotWhatWasTaken) {
+  TrackedScene scene({{"mug_frame", "mug", Eigen::Isometry3d::Identity()},
+                      {"box_frame", "cracker_box", Eigen::Isometry3d::Identity()}},
+                     core::Vocabulary({"cracker_box", "mug"}), 1);
+  constexpr std::int64_t kLate = 1000000000000, kEarly = 5000000000;
+  for (const int object : {0, 1}) scene.see(object, kLate, Eigen::Isometry3d::Identity());
+  scene.take(1, kLate);
+  scene.forgetStamps();
+  EXPECT_EQ(scene.present(kEarly), 0u);
+  EXPECT_EQ(scene.taken(), (std::vector<std::string>{"cracker_box (box_frame)"}));
+  for (const int object : {0, 1}) scene.see(object, kEarly, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(scene.present(kEarly), 0b01u);
+  scene.beginEpisode(kEarly);
+  EXPECT_EQ(scene.present(kEarly), 0b11u);
+}
+
 }  // namespace
 }  // namespace early_fusion::sim

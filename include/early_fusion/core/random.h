@@ -50,7 +50,9 @@ enum RandomStream : std::uint64_t {
   kDriveStream = 9,          ///< {episode} or {episode, step}: whether the training expert drives
   kRestartStream = 10,       ///< {round}: the seed of the initial weights of a policy that restarts
   kHeldOutPairsStream = 11,  ///< {}: which pairs of items are held out from training
-  kFirstRequestStream = 12   ///< {episode}: the first request of an episode that measures information retention
+  kFirstRequestStream = 12,  ///< {episode}: the first request of an episode that measures information retention
+  kLookStream = 13,          ///< {episode or look}: how the world looks, with domain randomisation
+  kDistractorStream = 14     ///< {episode}: where distractors stand
 };
 
 }  // namespace early_fusion::core

@@ -11,15 +11,16 @@ namespace early_fusion::learning {
 /// docs/training.md explains them.
 struct TrainingOptions {
   // The trajectories, and how often each is trained on.
-  int trajectories = 20000;         ///< length of the session
-  int max_instances = 0;            ///< maximum number of objects in training episodes; see sim::withUpTo()
-  sim::PairSplit pairs;             ///< pairs of items that no training request contains
-  int trajectories_per_round = 50;  ///< new trajectories before a round trains on the window
-  int window = 150;                 ///< the number of most recent trajectories that a round trains on; 0: all so far
-  int window_memory = 500;          ///< memory for the window's frames [MB]; the others are drawn again when needed
-  double epochs = 3;                ///< passes over the window in a round; a fraction takes a random part of it
-  int batch_size = 32;              ///< frames in a training step, each with its labelled requests
-  bool restart_policy = false;      ///< train a freshly initialised policy in each round
+  int trajectories = 20000;            ///< length of the session
+  int max_instances = 0;               ///< maximum number of objects in training episodes; see sim::withUpTo()
+  sim::PairSplit pairs;                ///< pairs of items that no training request contains
+  std::string randomisation = "none";  ///< how training episodes look; see sim::loadRandomisation()
+  int trajectories_per_round = 50;     ///< new trajectories before a round trains on the window
+  int window = 150;                    ///< the number of most recent trajectories that a round trains on; 0: all so far
+  int window_memory = 500;             ///< memory for the window's frames [MB]; the others are drawn again when needed
+  double epochs = 3;                   ///< passes over the window in a round; a fraction takes a random part of it
+  int batch_size = 32;                 ///< frames in a training step, each with its labelled requests
+  bool restart_policy = false;         ///< train a freshly initialised policy in each round
 
   // Who drives rollouts: see expert_drive.h.
   std::string exploration = "sample";     ///< how the policy chooses actions: one of model::actionChoiceNames()

@@ -47,8 +47,9 @@ struct TrajectoryStep {
 
 /// A labelled rollout of one episode.
 struct Trajectory {
-  std::uint64_t episode = 0;             ///< its number in the session
-  std::vector<sim::Instance> instances;  ///< the objects, present or not
+  std::uint64_t episode = 0;                            ///< its number in the session
+  std::vector<sim::Instance> instances;                 ///< the objects, present or not
+  std::shared_ptr<const world::Appearance> appearance;  ///< how the world looks; null: as its files say
   std::vector<TrajectoryStep> steps;
   sim::Score score;
 

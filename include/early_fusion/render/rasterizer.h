@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "early_fusion/core/image.h"
+#include "early_fusion/world/appearance.h"
 #include "early_fusion/world/object_pose.h"
 #include "early_fusion/world/world.h"
 
@@ -27,8 +28,13 @@ class Rasterizer {
   /// Sets the objects that are drawn, with their poses. Draws the shadow map again if something has changed.
   void setObjects(const std::vector<world::ObjectPose>& objects);
 
+  /// Sets how the world looks; null: as its files say, which is also so at the start.
+  /// @throws Error if the look does not fit the world.
+  void setAppearance(std::shared_ptr<const world::Appearance> appearance);
+
   /// Draws a frame. If neither the scene nor the camera has changed since the last frame, it is copied.
-  /// @param world_from_camera pose of the optical frame (z forward, x right, y down) in the world.
+  /// @param world_from_camera pose of the optical frame (z forward, x right, y down) in the world, without the look's
+  /// roll. The noise of a look is the same whenever the same objects are seen from the same pose.
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image);
 
  private:

@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "early_fusion/core/random.h"
 #include "early_fusion/core/vocabulary.h"
 #include "early_fusion/sim/task.h"
+#include "early_fusion/world/appearance.h"
 #include "early_fusion/world/object_pose.h"
 #include "early_fusion/world/world.h"
 
@@ -30,7 +32,7 @@ using InstanceMask = std::uint32_t;
 /// Names an episode. With the same world, the same key gives the same scene, request and first orientation in every
 /// process.
 struct EpisodeKey {
-  Task task;                 ///< including max_instances and pairs, because scene and request depend on them
+  Task task;                 ///< including max_instances, pairs and randomisation, because the start depends on them
   std::uint64_t seed = 0;    ///< of the session
   std::uint64_t number = 0;  ///< the episode's number in the session, from 0
 };
@@ -40,6 +42,7 @@ struct EpisodeSetup {
   std::vector<Instance> instances;
   core::Request request;
   world::Orientation orientation;
+  std::shared_ptr<const world::Appearance> appearance;  ///< null: the world file's
 };
 
 Eigen::Isometry3d worldFromObject(const world::World& world, const Instance& instance);
@@ -58,7 +61,7 @@ EpisodeSetup sampleEpisode(const world::World& world, const Task& task, core::Ra
 EpisodeSetup sampleEpisodeOf(const world::World& world, const std::vector<int>& items, int requested,
                              core::Random& random);
 
-/// The same with the key's own random stream.
+/// The same with the key's own random stream, and with the look that task.randomisation draws.
 EpisodeSetup sampleEpisode(const world::World& world, const EpisodeKey& key);
 
 }  // namespace early_fusion::sim

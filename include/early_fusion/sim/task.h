@@ -5,6 +5,7 @@
 
 #include "early_fusion/core/options.h"
 #include "early_fusion/sim/held_out_pairs.h"
+#include "early_fusion/sim/randomisation.h"
 
 namespace early_fusion::sim {
 
@@ -17,6 +18,7 @@ struct Task {
   int steps = 48;         ///< actions in an episode
   PairSplit pair_split;   ///< not an option; see withPairs()
   PairChoice pairs = PairChoice::kAll;  ///< not an option; see withPairs()
+  Randomisation randomisation;          ///< not an option; how the episodes look
 
   core::OptionSet options();
   int maxInstances() const { return max_instances > instances ? max_instances : instances; }

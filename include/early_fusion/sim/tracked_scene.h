@@ -60,6 +60,10 @@ class TrackedScene {
   /// What a person must put back, as "item (frame)".
   std::vector<std::string> taken() const;
 
+  /// Forgets when objects were seen and taken, because the time has jumped back. What was taken stays taken until it
+  /// is put back.
+  void forgetStamps();
+
   /// Everything has been put back. @throws Error naming all objects that were not seen at most `hold_sec` before
   /// `stamp_ns`, or not since they were taken; then nothing changes.
   void beginEpisode(std::int64_t stamp_ns);

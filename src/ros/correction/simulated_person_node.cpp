@@ -47,7 +47,8 @@ void SimulatedPersonNode::onProposal(const SceneConstPtr& scene, const ActionCon
 std::string SimulatedPersonNode::answer(const Scene& scene, const Action& proposal) {
   const SceneState now = sceneState(scene, world_->objects.vocabulary(), world_->rig.lattice());
   const int step = static_cast<int>(scene.step);
-  if (step == 0) pans_.clear();
+  if (scene.episode != episode_ || step == 0) pans_.clear();
+  episode_ = scene.episode;
   if (!cone_ || now.instances != instances_) {
     instances_ = now.instances;
     cone_ = std::make_unique<sim::ConeTable>(*world_, instances_);

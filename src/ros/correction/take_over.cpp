@@ -96,12 +96,11 @@ TakeOver::Output TakeOver::onStep(const Action& policy, const Request& request, 
     record.episode = policy.episode;
     record.step = policy.step;
     record.items = request.items;
+    record.policy = policy.name;
     record.frame = frame;
     open_ = Open{policy, record, std::max(now_sec + options_.patience_sec, hold_until_sec_)};
   }
-  open_->policy = policy;
-  open_->record.policy = policy.name;
-  output.proposal = policy;
+  output.proposal = open_->policy;  // other weights may have answered again; the person has seen the first proposal
   const std::string early = now_sec - next_press_sec_ <= kPressKeptSec ? next_press_ : "";
   next_press_.clear();
   const std::string press = early.empty() ? held : early;

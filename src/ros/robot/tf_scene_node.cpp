@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kQueue = 64;
 constexpr double kTimerSec = 0.01;
+constexpr double kJumpSec = 1;                            // stamps that are out of order by less are no jump in time
 constexpr double kMostHeightM = 0.05, kMostTiltDeg = 20;  // of an object that stands on the counter
 
 std::int64_t nanoseconds(const ::ros::Time& stamp) { return static_cast<std::int64_t>(stamp.toNSec()); }
@@ -45,6 +46,8 @@ core::OptionSet TfSceneNode::Options::options() {
   set.add("seed", seed, "determines which objects are requested");
   set.add("episode_timeout", episode_timeout_sec, 1, 86400, "s",
           "an episode also ends if nothing has happened for this long, but not during a pick");
+  set.add("pick_timeout", pick_timeout_sec, 0.1, 3600, "s",
+          "a pick without a result for this long is given up; longer than request_node's pick_timeout");
   set.addChoice("pick", pick, {"server", "none"},
                 "what takes objects away: the pick server, or a person who is told on 'found'");
   addDiagnosticPeriod(set, diagnostic_period_sec);
@@ -70,12 +73,14 @@ TfSceneNode::TfSceneNode(const Options& options)
     result_subscriber_ = node_.subscribe<PickActionResult>(
         std::string(kPickAction) + "/result", kQueue, [this](const PickActionResultConstPtr& result) {
           const bool succeeded = result->status.status == actionlib_msgs::GoalStatus::SUCCEEDED;
+          if (!picking_) return;  // of a pick that was given up
           picking_ = false;
           last_event_ = ::ros::WallTime::now();
           if (succeeded && result->result.success) onTaken(previous_action_);
         });
   } else {
     found_subscriber_ = node_.subscribe<Found>(kFoundTopic, kQueue, [this](const FoundConstPtr& found) {
+      picking_ = false;
       if (found->action == core::actionName(core::Action::kCollect)) onTaken(found->action);
     });
   }
@@ -96,8 +101,8 @@ void TfSceneNode::ask(const std::string& what) {
 void TfSceneNode::onRequest(const Request& request) {
   watch_.heard(request_subscriber_.getTopic());
   if (!playing_) return health_.count("requests between episodes");
-  if (request.header.stamp < latest_image_) {  // the time has jumped back: what was seen is in the future
-    tracked_ = sim::TrackedScene(tracked_.objects(), world_->objects.vocabulary(), options_.hold_sec);
+  if (request.header.stamp + ::ros::Duration(kJumpSec) < latest_image_) {  // what was seen is in the future now
+    tracked_.forgetStamps();
     transforms_.forget();
   }
   latest_image_ = request.header.stamp;
@@ -117,8 +122,8 @@ void TfSceneNode::onAction(const Action& action) {
   last_event_ = ::ros::WallTime::now();
 }
 
-int TfSceneNode::aimedAt() {
-  if (!scene_) return -1;
+int TfSceneNode::aimedAt() const {
+  if (!scene_ || scene_->header.stamp != answered_) return -1;
   const SceneState state = sceneState(*scene_, world_->objects.vocabulary(), world_->rig.lattice());
   const sim::ConeTable cone(*world_, state.instances);
   return cone.nearest(state.state.orientation, state.state.present);
@@ -128,8 +133,10 @@ void TfSceneNode::onTaken(const std::string& action) {
   if (!playing_) return;
   const int instance = aimedAt();
   if (instance < 0) {
-    return health_.drop("object that was taken away",
-                        "no tracked object was within 3 degrees of the camera's axis, so it is not known which one");
+    return health_.drop(
+        "object that was taken away",
+        "no tracked object was within 3 degrees of the camera's axis, or no scene was known then, so it "
+        "is not known which one");
   }
   tracked_.take(instance, nanoseconds(::ros::Time::now()));
   const std::string& item = tracked_.objects()[instance].item;
@@ -232,6 +239,15 @@ void TfSceneNode::publishScene(const Request& request, world::Orientation orient
   health_.count("scenes");
 }
 
+void TfSceneNode::checkPick() {
+  if (!picking_ || secondsSince(last_event_) < options_.pick_timeout_sec) return;
+  picking_ = false;
+  last_event_ = ::ros::WallTime::now();
+  health_.drop("pick", "no result on " + result_subscriber_.getTopic() + found_subscriber_.getTopic() +
+                           " for ~pick_timeout, " + std::to_string(options_.pick_timeout_sec) +
+                           " s; is the robot's pick server alive?");
+}
+
 bool TfSceneNode::over() const {
   if (picking_) return false;
   return actions_ >= options_.steps || outstanding_.empty() || secondsSince(last_event_) > options_.episode_timeout_sec;
@@ -239,6 +255,7 @@ bool TfSceneNode::over() const {
 
 void TfSceneNode::onTimer() {
   if (asked_) tryScene();
+  checkPick();
   if (playing_ && over()) endEpisode();
 }
 

@@ -43,15 +43,17 @@ geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform) {
 }
 
 sim::EpisodeKey firstEpisode(const RunEpisodesGoal& goal) {
-  const sim::Task task = sim::withUpTo(goal.max_instances, sim::parseTask(goal.task));
+  sim::Task task = sim::withUpTo(goal.max_instances, sim::parseTask(goal.task));
+  task.randomisation = sim::parseRandomisation(goal.randomisation);
   const std::string pairs = goal.pairs.empty() ? "all" : goal.pairs;
   return {sim::withPairs(pairs, {goal.held_out_pairs, goal.held_out_pairs_seed}, task), goal.seed, goal.first_episode};
 }
 
-void setPairs(const sim::Task& task, RunEpisodesGoal& goal) {
+void setEpisodes(const sim::Task& task, RunEpisodesGoal& goal) {
   goal.pairs = sim::pairChoiceName(task.pairs);
   goal.held_out_pairs = task.pair_split.held_out_pairs;
   goal.held_out_pairs_seed = task.pair_split.held_out_pairs_seed;
+  goal.randomisation = sim::randomisationText(task.randomisation);
 }
 
 learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal) {

@@ -13,6 +13,8 @@ core::OptionSet SimulatorNode::Options::options() {
   set.add("world", world, "world file; empty: the package's config/world.yaml");
   set.add("task", task, "task of free_run, and of 'reset' without a task: simple, medium, hard, or a task's YAML file");
   set.add("seed", seed, "seed of the episodes of free_run");
+  set.add("randomisation", randomisation,
+          "how the episodes of free_run and of 'reset' look: NAME of config/randomisation/NAME.yaml, or a YAML file");
   set.add("free_run", free_run, "play episode after episode while no goal is played");
   set.add("rate", rate_hz, 0, 10000, "Hz", "maximum number of steps a second; 0: no limit");
   set.add("republish", republish_sec, 0.05, 3600, "s", "publish a step again if no action has arrived for this long");
@@ -21,12 +23,18 @@ core::OptionSet SimulatorNode::Options::options() {
   return set;
 }
 
+sim::Task SimulatorNode::Options::freeRunTask() const {
+  sim::Task played = sim::loadTask(task);
+  played.randomisation = sim::loadRandomisation(randomisation);
+  return played;
+}
+
 SimulatorNode::SimulatorNode(const Options& options, const NodeContext& context,
                              std::shared_ptr<const world::World> world)
     : options_(options),
       node_(context.node),
       world_(world ? std::move(world) : world::loadWorld(options.world)),
-      free_run_{sim::loadTask(options.task), options.seed, 0},
+      free_run_{options.freeRunTask(), options.seed, 0},
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); },
               context),
       publisher_(node_, world_, options.marker_rate_hz),
@@ -170,7 +178,10 @@ bool SimulatorNode::onReset(Reset::Request& request, Reset::Response& response) 
   try {
     if (driver_ == Driver::kGoal) throw core::Error("a RunEpisodes goal is being played; cancel it first");
     sim::EpisodeKey key{free_run_.task, request.seed, request.episode};
-    if (!request.task.empty()) key.task = sim::parseTask(request.task);
+    if (!request.task.empty()) {
+      key.task = sim::parseTask(request.task);
+      key.task.randomisation = free_run_.task.randomisation;
+    }
     begin(options_.free_run ? Driver::kFreeRun : Driver::kHand, key);
     response.message =
         "episode " + std::to_string(key.number) + " of task " + key.task.name + ", seed " + std::to_string(key.seed);

@@ -46,6 +46,7 @@ StepPublisher::StepPublisher(::ros::NodeHandle& node, std::shared_ptr<const worl
   world_header.frame_id = world_->rig.worldFrame();
 
   core::Image image;
+  rasterizer_.setAppearance(episode.setup().appearance);
   rasterizer_.setObjects(sim::presentObjects(*world_, episode.setup().instances, episode.state().present));
   rasterizer_.render(world_->rig.worldFromCamera(episode.state().orientation), image);
   orientation_ = episode.state().orientation;

@@ -31,6 +31,8 @@ core::OptionSet EvaluatorNode::Options::options() {
   set.addChoice("pairs", pairs, sim::pairChoiceNames(),
                 "requests of the episodes: all, only those without a held-out pair of items, or only those with one");
   set.include(split.options());
+  set.add("randomisation", randomisation,
+          "how the episodes look: NAME of config/randomisation/NAME.yaml, or a YAML file");
   set.add("seed", seed, "seed of the episodes; those of the default are held out from all training");
   set.add("episodes", episodes, 1, 1000000, "episodes", "number of episodes");
   set.add("result", result, "JSON file for the scores; empty: print them only");
@@ -40,9 +42,15 @@ core::OptionSet EvaluatorNode::Options::options() {
   return set;
 }
 
+sim::Task EvaluatorNode::Options::scoredTask() const {
+  sim::Task scored = sim::loadTask(task);
+  scored.randomisation = sim::loadRandomisation(randomisation);
+  return sim::withPairs(pairs, split, scored);
+}
+
 EvaluatorNode::EvaluatorNode(const Options& options)
     : options_(options),
-      task_(sim::withPairs(options.pairs, options.split, sim::loadTask(options.task))),
+      task_(options.scoredTask()),
       world_(world::loadWorld(options.world)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) {
         status.add("waits for", client_.waitsFor());
@@ -70,7 +78,7 @@ void EvaluatorNode::startWhenPolicyIsThere() {
   evaluation_.policy = policy->weights;
   RolloutPlan plan;
   plan.goal.task = sim::taskText(task_);
-  setPairs(task_, plan.goal);
+  setEpisodes(task_, plan.goal);
   plan.goal.seed = options_.seed;
   plan.goal.episodes = static_cast<std::uint32_t>(options_.episodes);
   plan.weights = policy->weights;

@@ -80,7 +80,7 @@ void TrainerNode::rollOut() {
   plan.goal.max_instances = trainer.options().max_instances;
   plan.goal.expert_share = session_->expertDrive().share;
   plan.goal.expert_share_per = trainer.options().expert_share_per;
-  setPairs(session_->trainingTask(), plan.goal);
+  setEpisodes(session_->trainingTask(), plan.goal);
   plan.mode = trainer.options().exploration;
   const auto keep = [this](learning::Trajectory trajectory) {
     session_->trainer().add(std::move(trajectory));

@@ -47,7 +47,8 @@ class SimulatedPersonNode {
   Health health_;
   std::vector<sim::Instance> instances_;  // of the current scene; a simulated one is the same for a whole episode
   std::unique_ptr<sim::ConeTable> cone_;  // of the same
-  std::vector<int> pans_;                 // of each step so far [steps]
+  std::uint64_t episode_ = 0;             // of the last scene
+  std::vector<int> pans_;                 // of each of its steps so far [steps]
   Press answered_;                        // the last answer
   ::ros::Publisher press_publisher_;
   message_filters::Subscriber<Scene> scene_subscriber_;

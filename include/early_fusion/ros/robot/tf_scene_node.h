@@ -44,6 +44,7 @@ class TfSceneNode {
     std::uint64_t seed = 1;
     double episode_timeout_sec = 20;
     std::string pick = "server";
+    double pick_timeout_sec = 130;
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
@@ -60,6 +61,7 @@ class TfSceneNode {
 
   void onRequest(const Request& request);
   void onAction(const Action& action);
+  /// The last action has taken an object away. @param action COLLECT or REMOVE, as it was done.
   void onTaken(const std::string& action);
   void onTimer();
   bool onContinue(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -69,8 +71,9 @@ class TfSceneNode {
   void see(int object, const ::ros::Time& stamp);
   void tryScene();
   void publishScene(const Request& request, world::Orientation orientation);
-  /// The instance at which the camera looked in the last scene; -1: none.
-  int aimedAt();
+  /// The instance at which the camera looked at the last action; -1: none, or there was no scene of it.
+  int aimedAt() const;
+  void checkPick();
   bool over() const;
   void endEpisode();
   void ask(const std::string& what);
@@ -90,7 +93,7 @@ class TfSceneNode {
   std::uint64_t episode_ = 0;             // the next one, or the one that is played
   std::vector<std::string> outstanding_;  // requested in this episode, and not collected
   int actions_ = 0;
-  bool picking_ = false;
+  bool picking_ = false;      // whether the last action is a pick that has not ended
   ::ros::Time latest_image_;  // the stamp of the last request
   ::ros::Time answered_;      // the stamp of the last action
   std::string previous_action_;

@@ -39,8 +39,8 @@ learning::ExpertDrive expertDrive(const RunEpisodesGoal& goal);
 /// ones.
 learning::TrainingExpert trainingExpert(const RunEpisodesGoal& goal);
 
-/// Sets the requests of a goal's episodes to those of the task.
-void setPairs(const sim::Task& task, RunEpisodesGoal& goal);
+/// Gives the goal's episodes the task's requests and its look.
+void setEpisodes(const sim::Task& task, RunEpisodesGoal& goal);
 
 /// Weights that act as told, stamped with the current time. Needs ros::init().
 Weights weightsMessage(const nn::WeightsFile& file, const std::string& id, const std::string& mode, std::uint64_t seed,

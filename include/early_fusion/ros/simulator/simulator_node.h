@@ -30,9 +30,10 @@ namespace early_fusion::nodes {
 class SimulatorNode {
  public:
   struct Options {
-    std::string world;            ///< a world file; empty: config/world.yaml of the package
-    std::string task = "simple";  ///< for free_run, and for `reset` without a task
-    std::uint64_t seed = 1;       ///< for free_run
+    std::string world;                   ///< a world file; empty: config/world.yaml of the package
+    std::string task = "simple";         ///< for free_run, and for `reset` without a task
+    std::uint64_t seed = 1;              ///< for free_run
+    std::string randomisation = "none";  ///< as task
     bool free_run = false;
     double rate_hz = 0;  ///< 0: no limit
     double republish_sec = 1;
@@ -40,6 +41,8 @@ class SimulatorNode {
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
+    /// @throws core::Error naming what is wrong.
+    sim::Task freeRunTask() const;
   };
 
   /// @param world nothing: it is loaded from `options.world`.

@@ -21,6 +21,7 @@ class EvaluatorNode {
     std::string task = "simple";
     std::string pairs = "all";
     sim::PairSplit split;
+    std::string randomisation = "none";
     std::uint64_t seed = learning::kHeldOutSeed;
     int episodes = 500;
     std::string result;
@@ -28,6 +29,8 @@ class EvaluatorNode {
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
+    /// @throws core::Error naming what is wrong.
+    sim::Task scoredTask() const;
   };
 
   /// Shuts ROS down after the last episode has been scored.
