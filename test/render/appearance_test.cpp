@@ -79,7 +79,8 @@ TEST(Appearance, AProceduralTextureReplacesAPartsOwn) {
 TEST(Appearance, DistractorsAreDrawnAndCastShadows) {
   const std::shared_ptr<const world::World> world = world::loadWorld("");
   Rasterizer rasterizer(*world, 128);
-  const Eigen::Isometry3d camera = world->rig.worldFromCamera({0, 0});
+  const double z = world->placement.z;
+  const Eigen::Isometry3d camera = world::lookAlong({0.2, 0, z + 0.6}, {0.8, 0, -0.5});
   core::Image without, with, bare;
   world::Appearance look;
   look.distractors.push_back({true, 1.0, 0.0, 0.0, {0.1, 0.1, 0.2}, {0, 1, {1, 1, 1}}});

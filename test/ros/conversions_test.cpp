@@ -113,7 +113,8 @@ TEST_F(ConversionsTest, AGoalNamesTheRequestsAndTheLookOfItsEpisodes) {
   EXPECT_EQ(firstEpisode(goal).task.randomisation.noise, 2.5);
   EXPECT_EQ(firstEpisode(goal).task.randomisation.looks, 3);
   goal.randomisation = "{noise: 1e9}";
-  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("randomisation: noise: '1e9' is out of range"), std::string::npos)
+  EXPECT_NE(errorOf([&] { firstEpisode(goal); }).find("randomisation:1: noise: '1e9' is out of range"),
+            std::string::npos)
       << errorOf([&] { firstEpisode(goal); });
   goal.randomisation = "/etc/shadow";
   EXPECT_NE(errorOf([&] { firstEpisode(goal); }), "");
