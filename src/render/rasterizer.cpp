@@ -81,6 +81,7 @@ class Rasterizer::Implementation {
     const world::Appearance& look = appearance ? *appearance : plain_;
     setMaterials(look);
     shader_.setLook(lightOf(look), materials_.data());
+    sensor_.setLook(look.sensor);
     if (look.towards_light != look_->towards_light) shadow_map_.setLight(look.towards_light);
     appearance_ = std::move(appearance);
     look_ = appearance_ ? appearance_.get() : &plain_;
@@ -175,11 +176,12 @@ class Rasterizer::Implementation {
     }
     for (const RenderMesh& cluster : assets_->kitchen) drawer_.draw(cluster, identity_, projection, samples_);
     shader_.shade(viewpoint, drawer_, samples_, image);
-    if (!look_->sensor.isPlain()) expose(look_->sensor, noiseSeed(viewpoint.world_from_camera), image);
+    sensor_.expose(noiseSeed(viewpoint.world_from_camera), image);
   }
 
   /// The same for the same objects, seen from the same pose.
   std::uint64_t noiseSeed(const RenderPose& camera) const {
+    if (look_->sensor.noise == 0) return 0;
     std::uint64_t seed = look_->noise_seed;
     const auto add = [&seed](const RenderPose& pose) {
       for (const auto& row : pose.rotation) {
@@ -204,6 +206,7 @@ class Rasterizer::Implementation {
   SampleBuffer samples_;
   MeshDrawer drawer_;
   FragmentShader shader_;
+  Sensor sensor_;
   std::vector<Material> materials_;  // with the look's colours and textures
   const world::Appearance plain_;
   std::shared_ptr<const world::Appearance> appearance_;  // null: plain_

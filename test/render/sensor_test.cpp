@@ -13,6 +13,12 @@ core::Image grey(int value, int size = 64) {
   return image;
 }
 
+void expose(const world::SensorLook& look, std::uint64_t seed, core::Image& image) {
+  Sensor sensor;
+  sensor.setLook(look);
+  sensor.expose(seed, image);
+}
+
 TEST(Sensor, APlainLookChangesNothing) {
   core::Image image = grey(77);
   expose({}, 1, image);
