@@ -178,9 +178,8 @@ TEST_F(SessionTest, AWorkerOfItsOwnEndsWhenTrainerOrMasterIsGone) {
   const std::vector<std::string> worker = {"__ns:=worker_5", "world:=" + files_->world(), "timeout:=2"};
   const auto trainerLess = launch("worker.launch", worker);
   const auto session = launchTraining("stopped", {"rate:=1"});
-  ASSERT_TRUE(waitFor([&] { return session->output().find("training early_fusion") != std::string::npos; }))
-      << session->output();
-  std::this_thread::sleep_for(std::chrono::seconds(4));  // so that the worker has heard the trainer's progress
+  ASSERT_TRUE(waitFor([&] { return trainerLess->output().find("a trainer publishes /progress") != std::string::npos; }))
+      << trainerLess->output() << session->output();
   session->signal(SIGKILL);  // roslaunch; then nobody starts the trainer again, and nobody tells the master
   for (const int trainer : processesOf("trainer")) ::kill(trainer, SIGKILL);
   ASSERT_TRUE(trainerLess->ends(kSessionSec)) << trainerLess->output();

@@ -29,6 +29,7 @@ SessionMonitorNode::SessionMonitorNode(const Options& options)
 }
 
 void SessionMonitorNode::onProgress(const Progress& progress) {
+  if (!had_trainer_ && timeout_sec_ > 0) ROS_INFO("a trainer publishes %s", progress_subscriber_.getTopic().c_str());
   had_trainer_ = true;
   last_trainer_ = ::ros::WallTime::now();
   if (progress.stage != "finished") return;
