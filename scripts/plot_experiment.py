@@ -79,7 +79,7 @@ def draw_curves(axes, rows, options):
         groups = [groups[key] for key in sorted(groups)]
         x = [sum(float(row[options.across]) for row in group) / len(group) for group in groups]
         draw_mean(axes, x, [[float(row[options.measure]) for row in group] for group in groups], marker="o",
-                  markersize=3, label=name)
+                  markersize=3, color=options.colors[name], label=name)
     axes.set_xlim(left=0)
 
 
@@ -94,7 +94,8 @@ def draw_lines(axes, rows, options, places):
     for name in distinct(rows, options.line):
         points = {place: values_at(rows, options, name, place) for place in places}
         points = {place: values for place, values in points.items() if values}
-        line = draw_mean(axes, [places.index(place) for place in points], list(points.values()), marker="o", label=name)
+        line = draw_mean(axes, [places.index(place) for place in points], list(points.values()), marker="o",
+                         color=options.colors[name], label=name)
         if name != options.half:
             continue
         doubled = {place: values for half, values in points.items() for place in places
@@ -114,7 +115,8 @@ def draw_bars(axes, rows, options, places):
         means = [sum(values) / len(values) for _, values in at]
         spread = [[mean - min(values) for mean, (_, values) in zip(means, at)],
                   [max(values) - mean for mean, (_, values) in zip(means, at)]]
-        axes.bar(x, means, width, yerr=spread, error_kw={"linewidth": 1}, label=name)
+        axes.bar(x, means, width, yerr=spread, error_kw={"linewidth": 1}, color=options.colors[name],
+                 label=name)
     axes.set_xticks(range(len(places)), places)
 
 
@@ -153,6 +155,7 @@ def main():
     if options.across not in grid + ["trajectories", "minutes"]:
         fail(f"--across: '{options.across}' is none of trajectories, minutes, {', '.join(grid)}")
 
+    options.colors = {name: f"C{i}" for i, name in enumerate(distinct(rows, options.line))}  # the same in all panels
     panels = distinct(rows, options.panel)
     figure, axes = pyplot.subplots(1, len(panels), figsize=(1.5 + 4 * len(panels), 3.6), sharey=True, squeeze=False,
                                    layout="constrained")

@@ -72,6 +72,15 @@ class Plots(unittest.TestCase):
         for text in ("task hard", "task simple", "trajectories", "F1", "early_fusion", "late_fusion"):
             self.assertIn(text, texts)
 
+    def test_a_kind_has_the_same_colour_in_every_panel(self):
+        rows = RESULTS.splitlines()
+        one_each = self.write("one_each.csv", "\n".join(rows[:3] + [rows[9].replace(",32,", ",16,")]) + "\n")
+        self.texts("plot_experiment.py", one_each, "--panel", "task", "--where", "evaluation=task")
+        with open(self.figure, encoding="utf-8") as file:
+            figure = file.read()
+        for colour in ("#1f77b4", "#ff7f0e"):  # of early_fusion, alone in its panel, and of late_fusion, alone in its
+            self.assertIn(colour, figure)
+
     def test_bars_across_words_and_a_line_across_numbers(self):
         texts = self.texts("plot_experiment.py", self.results, "--across", "task", "--where", "channels=16")
         self.assertEqual(texts[:2], ["hard", "simple"])
