@@ -29,7 +29,7 @@ struct Randomisation {
   double noise = 0;                ///< standard deviation, in [0, this] [grey levels]
   double blur_px = 0;              ///< standard deviation, in [0, this] [px]
   double jpeg = 0;                 ///< share of the episodes whose frames are compressed, with a quality in [30, 95]
-  std::string texture_set = "trained";  ///< which procedural textures: one of textureSetNames()
+  std::string texture_set = "trained";  ///< which procedural textures: "trained" or "held_out"
   int looks = 0;                        ///< number of different looks; 0: a new one for each episode
   std::uint64_t look_seed = 1;          ///< determines them, if looks is above 0
 
