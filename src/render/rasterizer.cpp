@@ -77,25 +77,26 @@ class Rasterizer::Implementation {
         counter_z_(world.placement.z) {}
 
   void setAppearance(std::shared_ptr<const world::Appearance> appearance) {
-    if (appearance == appearance_) return;
-    const world::Appearance& look = appearance ? *appearance : plain_;
-    setMaterials(look);
-    shader_.setLook(lightOf(look), materials_.data());
-    sensor_.setLook(look.sensor);
-    if (look.towards_light != look_->towards_light) shadow_map_.setLight(look.towards_light);
-    appearance_ = std::move(appearance);
-    look_ = appearance_ ? appearance_.get() : &plain_;
-    drawObjects();
+    std::shared_ptr<const world::Appearance> look = appearance ? std::move(appearance) : plain_;
+    if (look == look_) return;
+    checkFits(*look);
+    setMaterials(*look);
+    shader_.setLook(lightOf(*look), materials_.data());
+    sensor_.setLook(look->sensor);
+    if (look->towards_light != look_->towards_light) shadow_map_.setLight(look->towards_light);
+    look_ = std::move(look);
+    is_scene_set_ = false;
   }
 
   void setObjects(const std::vector<world::ObjectPose>& objects) {
     if (objects == objects_) return;
     objects_ = objects;
-    drawObjects();
+    is_scene_set_ = false;
   }
 
   void render(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
-    if (last_image_.rgb.empty() || world_from_camera.matrix() != last_pose_.matrix()) {
+    if (!is_scene_set_ || world_from_camera.matrix() != last_pose_.matrix()) {
+      if (!is_scene_set_) setScene();
       draw(world_from_camera, last_image_);
       last_pose_ = world_from_camera;
     }
@@ -103,20 +104,24 @@ class Rasterizer::Implementation {
   }
 
  private:
-  /// Gives the materials the look's colours and textures.
-  void setMaterials(const world::Appearance& look) {
-    materials_ = assets_->materials;
+  /// @throws Error if the look is of another world.
+  void checkFits(const world::Appearance& look) const {
     const std::size_t items = assets_->objects.size();
     const std::size_t parts = assets_->first_procedural_material - assets_->first_object_material.back();
     if ((!look.kitchen.empty() && look.kitchen.size() != parts) ||
         (!look.object_colors.empty() && look.object_colors.size() != items) ||
-        look.distractors.size() > kMaxDistractors) {
+        look.distractors.size() > world::kMaxDistractors) {
       throw core::Error("the look is of another world: it has " + std::to_string(look.kitchen.size()) +
                         " parts of the kitchen, " + std::to_string(look.object_colors.size()) + " items and " +
                         std::to_string(look.distractors.size()) + " distractors; this world has " +
                         std::to_string(parts) + " and " + std::to_string(items) + ", and at most " +
-                        std::to_string(kMaxDistractors) + " distractors are drawn");
+                        std::to_string(world::kMaxDistractors) + " distractors are drawn");
     }
+  }
+
+  /// Gives the materials the look's colours and textures.
+  void setMaterials(const world::Appearance& look) {
+    materials_ = assets_->materials;
     for (std::size_t item = 0; item < look.object_colors.size(); ++item) {
       for (int i = assets_->first_object_material[item]; i < assets_->first_object_material[item + 1]; ++i) {
         setColor(materials_[i], look.object_colors[item]);
@@ -144,9 +149,8 @@ class Rasterizer::Implementation {
     material.size = procedural.size;
   }
 
-  /// Puts the objects and the distractors into the scene.
-  void drawObjects() {
-    last_image_.rgb.clear();
+  /// Puts the objects and the distractors into the scene, and draws their shadows.
+  void setScene() {
     drawn_.clear();
     for (const world::ObjectPose& object : objects_) {
       assert(object.item >= 0 && object.item < static_cast<int>(assets_->objects.size()));
@@ -157,6 +161,7 @@ class Rasterizer::Implementation {
       drawn_.push_back({one.is_round ? &assets_->cylinders[i] : &assets_->boxes[i], distractorPose(one, counter_z_)});
     }
     shadow_map_.draw(drawn_);
+    is_scene_set_ = true;
   }
 
   void draw(const Eigen::Isometry3d& world_from_camera, core::Image& image) {
@@ -208,13 +213,13 @@ class Rasterizer::Implementation {
   FragmentShader shader_;
   Sensor sensor_;
   std::vector<Material> materials_;  // with the look's colours and textures
-  const world::Appearance plain_;
-  std::shared_ptr<const world::Appearance> appearance_;  // null: plain_
-  const world::Appearance* look_ = &plain_;
+  const std::shared_ptr<const world::Appearance> plain_ = std::make_shared<world::Appearance>();
+  std::shared_ptr<const world::Appearance> look_ = plain_;
   double counter_z_;
   std::vector<world::ObjectPose> objects_;
+  bool is_scene_set_ = false;  // whether drawn_ and the shadows are those of the objects and the look
   std::vector<ShadowMap::Caster> drawn_;
-  core::Image last_image_;  // empty if the objects have changed since
+  core::Image last_image_;
   Eigen::Isometry3d last_pose_ = Eigen::Isometry3d::Identity();
   const RenderPose identity_ = renderPose(Eigen::Isometry3d::Identity());
 };

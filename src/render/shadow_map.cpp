@@ -28,9 +28,7 @@ FloatLanes evaluate(const LinearForm& form, const std::array<FloatLanes, 3>& p) 
   return form.factor[0] * p[0] + form.factor[1] * p[1] + form.factor[2] * p[2] + form.constant;
 }
 
-}  // namespace
-
-ShadowMap::Box ShadowMap::casterBox(const world::World& world) {
+Eigen::AlignedBox3d casterBox(const world::World& world) {
   double radius = 0.01, height = 0.01;
   for (int item = 0; item < world.objects.size(); ++item) {
     for (const world::MeshPart& part : world.objects[item].mesh.parts) {
@@ -42,30 +40,35 @@ ShadowMap::Box ShadowMap::casterBox(const world::World& world) {
     }
   }
   const world::HorizontalRectangle& area = world.placement;
-  return {{area.min_x - radius, area.min_y - radius, area.z},
-          {area.max_x + radius, area.max_y + radius, area.z + height}};
+  return {Eigen::Vector3d(area.min_x - radius, area.min_y - radius, area.z),
+          Eigen::Vector3d(area.max_x + radius, area.max_y + radius, area.z + height)};
 }
 
 /// Largest distance of the box's corners from its centre along an axis.
-double ShadowMap::extent(const Box& box, const double (&axis)[3]) {
+double extent(const Eigen::AlignedBox3d& box, const double (&axis)[3]) {
   double sum = 0;
-  for (int i = 0; i < 3; ++i) sum += 0.5 * (box.high[i] - box.low[i]) * std::fabs(axis[i]);
+  for (int i = 0; i < 3; ++i) sum += 0.5 * (box.max()[i] - box.min()[i]) * std::fabs(axis[i]);
   return sum;
 }
 
 /// scale * axis . (point - centre of the box)
-LinearForm ShadowMap::along(const double (&axis)[3], double scale, const Box& box) {
+LinearForm along(const double (&axis)[3], double scale, const Eigen::AlignedBox3d& box) {
   LinearForm form{{0.f, 0.f, 0.f}, 0.f};
   double constant = 0;
   for (int i = 0; i < 3; ++i) {
     form.factor[i] = static_cast<float>(scale * axis[i]);
-    constant -= scale * axis[i] * 0.5 * (box.low[i] + box.high[i]);
+    constant -= scale * axis[i] * 0.5 * (box.min()[i] + box.max()[i]);
   }
   form.constant = static_cast<float>(constant);
   return form;
 }
 
-ShadowMap::ShadowMap(const world::World& world) : box_(casterBox(world)) { setLight(world::kTowardsLight); }
+}  // namespace
+
+ShadowMap::ShadowMap(const world::World& world) : box_(casterBox(world)) {
+  setLight(world::kTowardsLight);
+  draw({});
+}
 
 void ShadowMap::setLight(const std::array<float, 3>& towards_light) {
   const double light[3] = {towards_light[0], towards_light[1], towards_light[2]};
@@ -86,7 +89,6 @@ void ShadowMap::setLight(const std::array<float, 3>& towards_light) {
   projection_.half_height = 0.5f * kSubsamples * height_;
   buffer_.clear();
   buffer_.emplace_back(width_, height_, false);
-  draw({});
 }
 
 void ShadowMap::draw(const std::vector<Caster>& casters) {

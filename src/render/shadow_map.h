@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
@@ -18,7 +19,7 @@ class ShadowMap {
   /// Everything is lit until the first draw().
   explicit ShadowMap(const world::World& world);
 
-  /// Everything is lit until the next draw(). @param towards_light unit length, world frame; its z is positive.
+  /// Needs a draw() afterwards. @param towards_light unit length, world frame; its z is positive.
   void setLight(const std::array<float, 3>& towards_light);
 
   struct Caster {
@@ -35,18 +36,10 @@ class ShadowMap {
                  IntLanes needed) const;
 
  private:
-  /// In the world [m].
-  struct Box {
-    double low[3], high[3];
-  };
-
-  static Box casterBox(const world::World& world);
-  static double extent(const Box& box, const double (&axis)[3]);
-  static LinearForm along(const double (&axis)[3], double scale, const Box& box);
   void summarise();
   FloatLanes filtered(IntLanes first_texel, FloatLanes fraction_x, FloatLanes fraction_y, FloatLanes depth) const;
 
-  Box box_;  // all places where a part of an object can be
+  Eigen::AlignedBox3d box_;  // all places in the world where a part of an object can be [m]
   Projection projection_;
   float texel_size_ = 0;  // [m]
   int width_ = 0;         // [texels]; a cell has kCellSize x kCellSize texels

@@ -25,7 +25,7 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  /// Sets the objects that are drawn, with their poses. Draws the shadow map again if something has changed.
+  /// Sets the objects that are drawn, with their poses. The next frame draws their shadows.
   void setObjects(const std::vector<world::ObjectPose>& objects);
 
   /// Sets how the world looks; null: as its files say, which is also so at the start.
