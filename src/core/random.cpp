@@ -1,5 +1,7 @@
 #include "early_fusion/core/random.h"
 
+#include <cmath>
+
 namespace early_fusion::core {
 
 namespace {
@@ -19,6 +21,11 @@ Random::Random(std::uint64_t seed, std::initializer_list<std::uint64_t> keys) : 
 std::uint64_t Random::next() { return mix(state_ += 0x9e3779b97f4a7c15u); }
 
 double Random::uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
+
+double Random::normal() {
+  const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+  return radius * std::cos(2 * M_PI * uniform());
+}
 
 int Random::below(int count) {
   // Numbers at or above the largest multiple of `count` would favour small results: draw again.

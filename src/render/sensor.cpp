@@ -13,15 +13,12 @@ namespace {
 
 constexpr int kNoiseBits = 16;
 
-/// 2^kNoiseBits standard normal numbers [1/256] (Box and Muller 1958).
+/// 2^kNoiseBits standard normal numbers [1/256].
 const std::vector<std::int16_t>& normalNumbers() {
   static const std::vector<std::int16_t> numbers = [] {
     std::vector<std::int16_t> drawn(1 << kNoiseBits);
     core::Random random(1);
-    for (std::int16_t& number : drawn) {
-      const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
-      number = static_cast<std::int16_t>(std::lround(256 * radius * std::cos(2 * M_PI * random.uniform())));
-    }
+    for (std::int16_t& number : drawn) number = static_cast<std::int16_t>(std::lround(256 * random.normal()));
     return drawn;
   }();
   return numbers;

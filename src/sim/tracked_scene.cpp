@@ -21,11 +21,6 @@ namespace {
 constexpr double kMostHoldSec = 3600;
 constexpr double kMostAngleDeg = 3, kMostDistanceM = 0.05;  // of a camera from the rig's
 
-/// A standard normal number (Box and Muller 1958).
-double normal(core::Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * EIGEN_PI * random.uniform());
-}
-
 std::int64_t holdNs(double hold_sec) {
   if (!(hold_sec >= 0 && hold_sec <= kMostHoldSec)) {
     throw core::Error("hold_sec: " + std::to_string(hold_sec) + " is not in [0, 3600]");
@@ -37,9 +32,9 @@ std::int64_t holdNs(double hold_sec) {
 
 std::vector<Instance> asTracked(std::vector<Instance> instances, const TrackerErrors& errors, core::Random& random) {
   for (Instance& instance : instances) {
-    instance.x += 1e-3 * errors.mm * normal(random);
-    instance.y += 1e-3 * errors.mm * normal(random);
-    instance.theta += errors.degrees * EIGEN_PI / 180 * normal(random);
+    instance.x += 1e-3 * errors.mm * random.normal();
+    instance.y += 1e-3 * errors.mm * random.normal();
+    instance.theta += errors.degrees * EIGEN_PI / 180 * random.normal();
   }
   return instances;
 }

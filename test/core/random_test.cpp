@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 namespace early_fusion::core {
@@ -22,6 +23,21 @@ TEST(Random, SeedsAndKeysSeparateStreams) {
     first.insert(Random(seed, {kEpisodeStream, 0, 0}).next());
   }
   EXPECT_EQ(first.size(), 20u * 22u);
+}
+
+TEST(Random, NormalHasMeanZeroAndVarianceOne) {
+  Random random(1);
+  double sum = 0, squares = 0, beyond_two = 0;
+  constexpr int kCount = 100000;
+  for (int i = 0; i < kCount; ++i) {
+    const double value = random.normal();
+    sum += value;
+    squares += value * value;
+    beyond_two += std::abs(value) > 2;
+  }
+  EXPECT_NEAR(sum / kCount, 0, 0.01);
+  EXPECT_NEAR(squares / kCount, 1, 0.02);
+  EXPECT_NEAR(beyond_two / kCount, 0.0455, 0.003);
 }
 
 TEST(Random, BelowIsUniform) {

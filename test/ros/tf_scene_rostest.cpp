@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "early_fusion/ros/correction/presses.h"
+#include "early_fusion/ros/shared/conversions.h"
 #include "early_fusion/ros/shared/topics.h"
 #include "early_fusion/sim/cone_table.h"
 #include "early_fusion/sim/scene.h"
@@ -63,14 +64,7 @@ class TfSceneTest : public testing::Test {
     transform.header.stamp = stamp;
     transform.header.frame_id = world_->rig.worldFrame();
     transform.child_frame_id = frame;
-    const Eigen::Quaterniond rotation(pose.linear());
-    transform.transform.translation.x = pose.translation().x();
-    transform.transform.translation.y = pose.translation().y();
-    transform.transform.translation.z = pose.translation().z();
-    transform.transform.rotation.x = rotation.x();
-    transform.transform.rotation.y = rotation.y();
-    transform.transform.rotation.z = rotation.z();
-    transform.transform.rotation.w = rotation.w();
+    transform.transform = transformMessage(pose);
     tf2_msgs::TFMessage message;
     message.transforms = {transform};
     tf_publisher_.publish(message);

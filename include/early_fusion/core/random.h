@@ -24,6 +24,9 @@ class Random {
   /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
+  /// Standard normal (Box and Muller 1958).
+  double normal();
+
   /// Uniform in {0, ..., count - 1}, without bias. `count` must be positive.
   int below(int count);
 

@@ -23,6 +23,16 @@ sensor_msgs::ImagePtr imageMessage(core::Image image, const std_msgs::Header& he
   return message;
 }
 
+geometry_msgs::Transform transformMessage(const Eigen::Isometry3d& transform) {
+  const geometry_msgs::Pose pose = poseMessage(transform);
+  geometry_msgs::Transform message;
+  message.translation.x = pose.position.x;
+  message.translation.y = pose.position.y;
+  message.translation.z = pose.position.z;
+  message.rotation = pose.orientation;
+  return message;
+}
+
 Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform) {
   const auto& t = transform.translation;
   const auto& r = transform.rotation;

@@ -31,15 +31,11 @@ void VirtualTracker::publish(const std::vector<sim::Instance>& instances, sim::I
     const int number = ++counts[instances[i].item];
     const double dropped = random.uniform();
     if (!(present >> i & 1) || dropped < options_.dropout) continue;
-    const geometry_msgs::Pose pose = poseMessage(sim::worldFromObject(world_, seen[i]));
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = ::ros::Time::now();
     transform.header.frame_id = world_.rig.worldFrame();
     transform.child_frame_id = world_.objects.vocabulary().name(instances[i].item) + "_" + std::to_string(number);
-    transform.transform.translation.x = pose.position.x;
-    transform.transform.translation.y = pose.position.y;
-    transform.transform.translation.z = pose.position.z;
-    transform.transform.rotation = pose.orientation;
+    transform.transform = transformMessage(sim::worldFromObject(world_, seen[i]));
     transforms.push_back(transform);
   }
   if (!transforms.empty()) broadcaster_.sendTransform(transforms);

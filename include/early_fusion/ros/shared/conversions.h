@@ -26,6 +26,8 @@ namespace early_fusion::nodes {
 
 geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& transform);
 
+geometry_msgs::Transform transformMessage(const Eigen::Isometry3d& transform);
+
 Eigen::Isometry3d isometry(const geometry_msgs::Transform& transform);
 
 /// The first episode of a goal. @throws core::Error as sim::parseTask(), sim::withUpTo() and sim::withPairs().
