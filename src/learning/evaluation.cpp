@@ -27,6 +27,7 @@ Evaluation::Evaluation(std::string policy_name, const sim::Task& episodes_task, 
     : policy(std::move(policy_name)),
       task(episodes_task.name),
       pairs(sim::pairChoiceName(episodes_task.pairs)),
+      randomisation(sim::randomisationText(episodes_task.randomisation)),
       seed(episodes_seed) {}
 
 void Evaluation::add(const Trajectory& trajectory) {
@@ -54,6 +55,7 @@ std::string Evaluation::toJson() const {
   json["policy"] = policy;
   json["task"] = task;
   json["pairs"] = pairs;
+  json["randomisation"] = randomisation;
   json["seed"] = seed;
   json["episodes"] = outcomes.size();
   json["f1"] = f1();

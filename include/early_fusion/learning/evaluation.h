@@ -34,6 +34,7 @@ struct Evaluation {
   std::string policy;
   std::string task;
   std::string pairs = "all";  ///< the requests of the episodes: one of sim::pairChoiceNames()
+  std::string randomisation;  ///< how they look, as sim::randomisationText()
   std::uint64_t seed = 0;
   std::vector<EpisodeOutcome> outcomes;  ///< in the order in which they were added
 
@@ -42,7 +43,8 @@ struct Evaluation {
   double recall() const;
   double agreement() const;
 
-  /// {"policy", "task", "pairs", "seed", "episodes", "f1", "precision", "recall", "agreement", "per_episode": [...]}.
+  /// {"policy", "task", "pairs", "randomisation", "seed", "episodes", "f1", "precision", "recall", "agreement",
+  /// "per_episode": [...]}.
   std::string toJson() const;
 
   /// "F1 0.913  precision 0.940  recall 0.902  agreement 0.881  (500 episodes)".
