@@ -66,9 +66,8 @@ sim::Task chosenTask(const EvaluateOptions& options, const core::GivenOptions& g
   for (const auto& [name, value] : given) {
     if (set.has(name)) set.set(name, value, "command line");
   }
-  sim::Task task = sim::loadTask(options.task);
-  task.randomisation = sim::loadRandomisation(options.randomisation);
-  return sim::withPairs(options.pairs, split, task);
+  return sim::withPairs(options.pairs, split,
+                        sim::withRandomisation(options.randomisation, sim::loadTask(options.task)));
 }
 
 void evaluate(const core::GivenOptions& given) {

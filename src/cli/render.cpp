@@ -129,8 +129,7 @@ core::Image draw(const RenderOptions& options, const world::World& world, const 
 }
 
 void render(const RenderOptions& options) {
-  sim::Task task = sim::loadTask(options.task);
-  task.randomisation = sim::loadRandomisation(options.randomisation);
+  const sim::Task task = sim::withRandomisation(options.randomisation, sim::loadTask(options.task));
   if (options.step >= task.steps) {
     throw core::Error("--step: " + std::to_string(options.step) + " is after the task's last step, " +
                       std::to_string(task.steps - 1));

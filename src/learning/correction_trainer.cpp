@@ -55,7 +55,8 @@ sim::Task rehearsalTask(const CorrectionOptions& options) {
         "restart_policy: a policy that restarts in each round forgets the weights that it starts from; "
         "set it to false");
   }
-  return sim::withUpTo(options.training.max_instances, sim::loadTask(options.task));
+  return sim::withRandomisation(options.training.randomisation,
+                                sim::withUpTo(options.training.max_instances, sim::loadTask(options.task)));
 }
 
 /// Repeats `elements` in shuffled passes until there are `count`.

@@ -45,12 +45,12 @@ std::string learningOptions(SessionOptions options) {
 }
 
 /// The settings that must be the same when a session is resumed: YAML texts by their metadata keys.
-std::array<std::pair<const char*, std::string>, 4> settings(const SessionOptions& options, sim::Task task,
+std::array<std::pair<const char*, std::string>, 4> settings(const SessionOptions& options, sim::Task training_task,
                                                             world::WorldOptions world) {
   return {{{kOptions, learningOptions(options)},
-           {kTask, task.options().toYaml()},
+           {kTask, training_task.options().toYaml()},
            {kWorld, world.options().toYaml()},
-           {kRandomisation, sim::loadRandomisation(options.training.randomisation).options().toYaml()}}};
+           {kRandomisation, training_task.randomisation.options().toYaml()}}};
 }
 
 using Settings = std::map<std::string, std::string>;
@@ -93,9 +93,9 @@ double parseSeconds(const std::string& text, const std::string& source) {
 
 /// The task of the training episodes. @throws Error if the options do not fit the task.
 sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
-  task.randomisation = sim::loadRandomisation(options.randomisation);
-  return sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
-                        sim::withUpTo(options.max_instances, std::move(task)));
+  return sim::withRandomisation(options.randomisation,
+                                sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
+                                               sim::withUpTo(options.max_instances, std::move(task))));
 }
 
 }  // namespace
@@ -120,6 +120,7 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
   checkSession(options_, *world_);
+  training_task_ = trainingTaskOf(options_.training, task_);
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   options_.policy.precision = model::resolvedPrecision(options_.policy.precision);
   lock_ = std::make_unique<core::FolderLock>(options_.output);
@@ -143,8 +144,6 @@ TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<
   }
 }
 
-sim::Task TrainingSession::trainingTask() const { return trainingTaskOf(options_.training, task_); }
-
 void TrainingSession::resume() {
   const std::string source = path(kCheckpoint);
   const nn::WeightsFile file = nn::WeightsFile::read(source);
@@ -153,7 +152,7 @@ void TrainingSession::resume() {
                       ": has no digest, so damage could not be seen; it is damaged, or an earlier version wrote it; "
                       "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
   }
-  for (const auto& [key, yaml] : settings(options_, task_, world_->options)) {
+  for (const auto& [key, yaml] : settings(options_, training_task_, world_->options)) {
     checkSame(file.meta(key, source), yaml, source);
   }
   trainer_->restore(file, source, [this](const auto& episodes, const auto& finished) { replay(episodes, finished); });
@@ -194,7 +193,7 @@ void TrainingSession::save() const {
   weights().write(weightsPath());
   core::writeFileAtomically(path(kCurveFile), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
-  for (const auto& [key, yaml] : settings(options_, task_, world_->options)) file.metadata[key] = yaml;
+  for (const auto& [key, yaml] : settings(options_, training_task_, world_->options)) file.metadata[key] = yaml;
   file.metadata[kElapsed] = std::to_string(elapsedSec());
   file.metadata[kCurve] = curve_.toCsv();
   file.write(path(kCheckpoint));

@@ -187,7 +187,7 @@ RenderMesh prism(int sides, float radius, float first_angle, std::int32_t materi
 void addDistractors(RenderAssets& assets) {
   constexpr int kCylinderSides = 16;
   assets.first_distractor_material = static_cast<std::int32_t>(assets.materials.size());
-  for (int i = 0; i < kMaxDistractors; ++i) {
+  for (int i = 0; i < world::kMaxDistractors; ++i) {
     const auto material = static_cast<std::int32_t>(assets.materials.size());
     assets.materials.push_back(assets.materials[assets.first_procedural_material]);
     assets.boxes.push_back(prism(4, std::sqrt(0.5f), static_cast<float>(EIGEN_PI / 4), material));

@@ -44,9 +44,6 @@ struct RenderPose {
 
 RenderPose renderPose(const Eigen::Isometry3d& pose);
 
-/// The maximum number of distractors that an image shows.
-inline constexpr int kMaxDistractors = 16;
-
 /// Meshes, textures and materials that the rasterizers of one World share. Immutable.
 struct RenderAssets {
   std::vector<std::uint32_t> texels;
@@ -55,7 +52,7 @@ struct RenderAssets {
   std::vector<RenderMesh> kitchen;  ///< in the world frame, cut into compact clusters that are culled one by one
   std::vector<std::int32_t> first_object_material;  ///< by item, and at the end the first material of the kitchen
   std::int32_t first_procedural_material = 0;       ///< after the kitchen's; world::kProceduralTextures of them
-  std::int32_t first_distractor_material = 0;       ///< one for each of kMaxDistractors
+  std::int32_t first_distractor_material = 0;       ///< one for each of world::kMaxDistractors
   std::vector<RenderMesh> boxes, cylinders;  ///< 1 m in size, on z = 0; the k-th has the k-th distractor's material
 };
 

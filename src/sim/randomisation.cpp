@@ -1,6 +1,9 @@
 #include "early_fusion/sim/randomisation.h"
 
+#include <algorithm>
+
 #include "early_fusion/core/file.h"
+#include "early_fusion/world/appearance.h"
 
 namespace early_fusion::sim {
 
@@ -20,7 +23,7 @@ core::OptionSet Randomisation::options() {
           "procedural textures are repeated 2^x times as often, x in [-this, this]");
   set.add("object_brightness", object_brightness, 0, 0.95, "", "each item's factor is drawn from [1 - this, 1 + this]");
   set.add("object_color", object_color, 0, 0.95, "", "the same for each channel of each item");
-  set.add("distractors", distractors, 0, 16, "",
+  set.add("distractors", distractors, 0, world::kMaxDistractors, "",
           "maximum number of boxes and cylinders that stand between the objects and are none");
   set.add("camera_roll", camera_roll_deg, 0, 45, "degrees", "greatest turn of the camera about its axis");
   set.add("field_of_view", field_of_view, 0, 0.5, "", "the focal length's factor is drawn from [1 - this, 1 + this]");
@@ -38,12 +41,10 @@ core::OptionSet Randomisation::options() {
 }
 
 bool Randomisation::isNone() const {
-  Randomisation other;
-  other.texture_set = texture_set;
-  other.looks = looks;
-  other.look_seed = look_seed;
-  Randomisation own = *this;
-  return own.options().toYamlLine() == other.options().toYamlLine();
+  return distractors == 0 &&
+         std::max({light_direction_deg, light_strength, ambient_strength, light_color, kitchen_textures, kitchen_color,
+                   texture_scale, object_brightness, object_color, camera_roll_deg, field_of_view, exposure,
+                   white_balance, gamma, noise, blur_px, jpeg}) == 0;
 }
 
 Randomisation loadRandomisation(const std::string& name_or_file) {

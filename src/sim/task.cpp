@@ -59,6 +59,11 @@ Task withUpTo(std::int64_t most, Task task) {
   return task;
 }
 
+Task withRandomisation(const std::string& name_or_file, Task task) {
+  task.randomisation = loadRandomisation(name_or_file);
+  return task;
+}
+
 Task withPairs(const std::string& choice, PairSplit split, Task task) {
   split.options().validate("task '" + task.name + "'");
   task.pairs = pairChoiceFromName(choice);

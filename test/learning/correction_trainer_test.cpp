@@ -38,6 +38,7 @@ SmallCorrection* CorrectionTest::small_ = nullptr;
 TEST_F(CorrectionTest, TheSameEpisodesGiveTheSameWeightsAgain) {
   CorrectionTrainer live(small_->options("live"), small_->world), again(small_->options("again"), small_->world);
   CorrectionTrainer seeded(small_->options("seeded", {{"seed", "2"}}), small_->world);
+  CorrectionTrainer randomised(small_->options("randomised", {{"randomisation", "kitchen_1"}}), small_->world);
   const std::string before = bytes(live);
   for (std::uint64_t number = 0; number < 3; ++number) {
     const std::vector<WatchedStep> steps = small_->watch(live, number);
@@ -45,10 +46,12 @@ TEST_F(CorrectionTest, TheSameEpisodesGiveTheSameWeightsAgain) {
     live.add(steps);
     again.add(steps);
     seeded.add(steps);
+    randomised.add(steps);
   }
   EXPECT_TRUE(bytes(live) == bytes(again));
   EXPECT_FALSE(bytes(live) == before);
   EXPECT_FALSE(bytes(live) == bytes(seeded)) << "the seed determines the rehearsal and the order";
+  EXPECT_FALSE(bytes(live) == bytes(randomised)) << "the rehearsal looks as the randomisation draws";
   EXPECT_EQ(live.round().episodes, 3u);
   EXPECT_GE(live.round().labels, live.round().presses);
 }

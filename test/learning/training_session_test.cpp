@@ -133,7 +133,9 @@ TEST_F(TrainingSessionTest, ARandomisedSessionResumesBitForBitAndRefusesAnotherF
   TrainingSession whole(noisy("whole"), world());
   EXPECT_EQ(whole.trainingTask().randomisation.noise, 5);
   EXPECT_TRUE(whole.task().randomisation.isNone()) << "held-out episodes look as the world's files say";
+  core::writeFileAtomically(file, "{noise: 50}");  // the file is read once
   runSession(whole, [](const Progress&) {});
+  core::writeFileAtomically(file, "{noise: 5, exposure: 1, kitchen_textures: 1, distractors: 2}");
   {
     TrainingSession interrupted(noisy("parts"), world());
     runTo(interrupted, 6);

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "early_fusion/core/error.h"
 #include "early_fusion/render/rasterizer.h"
+#include "model/error_of.h"
 #include "world/handmade_world.h"
 
 namespace early_fusion::render {
@@ -153,12 +153,7 @@ TEST(Appearance, ALookOfAnotherWorldIsAnError) {
   Rasterizer rasterizer(world, 64);
   auto look = std::make_shared<world::Appearance>();
   look->kitchen.resize(5);
-  try {
-    rasterizer.setAppearance(look);
-    FAIL();
-  } catch (const core::Error& error) {
-    EXPECT_NE(std::string(error.what()).find("5 parts of the kitchen"), std::string::npos) << error.what();
-  }
+  model::expectError([&] { rasterizer.setAppearance(look); }, "5 parts of the kitchen");
 }
 
 }  // namespace

@@ -2,19 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "early_fusion/core/error.h"
+#include "model/error_of.h"
 
 namespace early_fusion::sim {
 namespace {
-
-std::string errorOf(const std::string& text) {
-  try {
-    parseRandomisation(text);
-  } catch (const core::Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(Randomisation, NoneChangesNothing) {
   EXPECT_TRUE(Randomisation().isNone());
@@ -45,16 +36,23 @@ TEST(Randomisation, ItsTextIsReadAsTheSameOne) {
   EXPECT_EQ(read.look_seed, 18446744073709551615u);
 }
 
-TEST(Randomisation, NamesWhatIsWrong) {
-  EXPECT_NE(errorOf("{noise: -1}").find("noise: '-1' is out of range"), std::string::npos) << errorOf("{noise: -1}");
-  EXPECT_NE(errorOf("{nois: 1}").find("nois"), std::string::npos);
-  EXPECT_NE(errorOf("{texture_set: all}").find("texture_set"), std::string::npos);
-  try {
-    loadRandomisation("kitchen");
-    FAIL();
-  } catch (const core::Error& error) {
-    EXPECT_NE(std::string(error.what()).find("kitchen_1"), std::string::npos) << error.what();
+TEST(Randomisation, EachOptionButThoseOfTheChoiceChangesSomething) {
+  for (const core::Option& option : Randomisation().options().options()) {
+    if (option.name == "texture_set" || option.name == "looks" || option.name == "look_seed") continue;
+    Randomisation one;
+    one.options().set(option.name, option.name == "distractors" ? "1" : "0.1", "test");
+    EXPECT_FALSE(one.isNone()) << option.name;
   }
+}
+
+TEST(Randomisation, NamesWhatIsWrong) {
+  const auto expectError = [](const std::string& text, const std::string& part) {
+    model::expectError([&] { parseRandomisation(text); }, part);
+  };
+  expectError("{noise: -1}", "noise: '-1' is out of range");
+  expectError("{nois: 1}", "nois");
+  expectError("{texture_set: all}", "texture_set");
+  model::expectError([] { loadRandomisation("kitchen"); }, "kitchen_1");
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ class TrainingSession {
   const world::World& world() const { return *world_; }
   /// The task that the policy is scored on.
   const sim::Task& task() const { return task_; }
-  /// The task of the training episodes: with up to max_instances objects, and without held-out pairs.
-  sim::Task trainingTask() const;
+  /// The task of the training episodes: randomised, with up to max_instances objects, and without held-out pairs.
+  const sim::Task& trainingTask() const { return training_task_; }
   TrainingExpert trainingExpert() const { return trainingExpertFromName(options_.training.training_expert); }
   /// Plays training episodes and labels them with the training expert. The session must outlive it.
   RolloutRunner trainingRunner() const { return {*world_, trainingTask(), options_.seed, trainingExpert()}; }
@@ -96,6 +96,7 @@ class TrainingSession {
   SessionOptions options_;
   std::shared_ptr<const world::World> world_;
   sim::Task task_;
+  sim::Task training_task_;
   std::unique_ptr<core::FolderLock> lock_;
   std::unique_ptr<Trainer> trainer_;
   LearningCurve curve_;

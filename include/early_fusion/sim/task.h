@@ -18,7 +18,7 @@ struct Task {
   int steps = 48;         ///< actions in an episode
   PairSplit pair_split;   ///< not an option; see withPairs()
   PairChoice pairs = PairChoice::kAll;  ///< not an option; see withPairs()
-  Randomisation randomisation;          ///< not an option; how the episodes look
+  Randomisation randomisation;          ///< not an option; see withRandomisation(). How the episodes look
 
   core::OptionSet options();
   int maxInstances() const { return max_instances > instances ? max_instances : instances; }
@@ -43,6 +43,9 @@ std::string taskText(Task task);
 /// The task for training episodes with up to `most` instances. Returns the task itself if it has that many already.
 /// @throws Error if `most` is more than kMaxInstances.
 Task withUpTo(std::int64_t most, Task task);
+
+/// The task whose episodes look as a randomisation draws. @throws Error as loadRandomisation().
+Task withRandomisation(const std::string& name_or_file, Task task);
 
 /// The task with requests of trained or of held-out pairs only, or of any. @param choice one of pairChoiceNames().
 /// @throws Error for an unknown choice or a split out of range; unless the choice is "all", if no pairs are held out or

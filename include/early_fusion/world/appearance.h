@@ -22,6 +22,8 @@ struct SurfaceLook {
 
 inline constexpr int kProceduralTextures = 32;
 
+inline constexpr int kMaxDistractors = 16;  ///< in an episode
+
 /// A box or an upright cylinder on the counter that is no object: no policy knows it, and no action takes it away.
 struct Distractor {
   bool is_round = false;

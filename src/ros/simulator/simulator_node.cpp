@@ -23,18 +23,12 @@ core::OptionSet SimulatorNode::Options::options() {
   return set;
 }
 
-sim::Task SimulatorNode::Options::freeRunTask() const {
-  sim::Task played = sim::loadTask(task);
-  played.randomisation = sim::loadRandomisation(randomisation);
-  return played;
-}
-
 SimulatorNode::SimulatorNode(const Options& options, const NodeContext& context,
                              std::shared_ptr<const world::World> world)
     : options_(options),
       node_(context.node),
       world_(world ? std::move(world) : world::loadWorld(options.world)),
-      free_run_{options.freeRunTask(), options.seed, 0},
+      free_run_{sim::withRandomisation(options.randomisation, sim::loadTask(options.task)), options.seed, 0},
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) { status.add("waits for", whatIsAwaited()); },
               context),
       publisher_(node_, world_, options.marker_rate_hz),

@@ -42,15 +42,10 @@ core::OptionSet EvaluatorNode::Options::options() {
   return set;
 }
 
-sim::Task EvaluatorNode::Options::scoredTask() const {
-  sim::Task scored = sim::loadTask(task);
-  scored.randomisation = sim::loadRandomisation(randomisation);
-  return sim::withPairs(pairs, split, scored);
-}
-
 EvaluatorNode::EvaluatorNode(const Options& options)
     : options_(options),
-      task_(options.scoredTask()),
+      task_(sim::withPairs(options.pairs, options.split,
+                           sim::withRandomisation(options.randomisation, sim::loadTask(options.task)))),
       world_(world::loadWorld(options.world)),
       health_([this](diagnostic_updater::DiagnosticStatusWrapper& status) {
         status.add("waits for", client_.waitsFor());

@@ -41,11 +41,9 @@ class SimulatorNode {
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
-    /// @throws core::Error naming what is wrong.
-    sim::Task freeRunTask() const;
   };
 
-  /// @param world nothing: it is loaded from `options.world`.
+  /// @param world nothing: it is loaded from `options.world`. @throws core::Error naming what is wrong.
   explicit SimulatorNode(const Options& options, const NodeContext& context = NodeContext(),
                          std::shared_ptr<const world::World> world = nullptr);
 

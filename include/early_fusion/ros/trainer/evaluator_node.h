@@ -29,11 +29,9 @@ class EvaluatorNode {
     double diagnostic_period_sec = 1;
 
     core::OptionSet options();
-    /// @throws core::Error naming what is wrong.
-    sim::Task scoredTask() const;
   };
 
-  /// Shuts ROS down after the last episode has been scored.
+  /// Shuts ROS down after the last episode has been scored. @throws core::Error naming what is wrong.
   explicit EvaluatorNode(const Options& options);
 
  private:
