@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets everything up and runs all tests, as many at a time as there are cores, then lists those that were skipped, with
-# reasons. Arguments go to ctest:
+# Sets everything up and runs all tests, one more at a time than there are cores, because the tests of nodes often wait.
+# Then it lists those that were skipped, with reasons. Arguments go to ctest:
 #
 #   scripts/test.sh -R nn
 #
@@ -21,6 +21,6 @@ esac
 [ "${SANITIZE:-}" = thread ] || scripts/setup.sh --tests
 . scripts/ros_environment.sh
 status=0
-(cd "$build" && ctest -j"$(nproc)" --output-on-failure "${wanted[@]}" "$@") || status=$?
+(cd "$build" && ctest -j"$(($(nproc) + 1))" --output-on-failure "${wanted[@]}" "$@") || status=$?
 /usr/bin/python3 test/skipped_tests.py "$build/test_results/early_fusion" || true
 exit "$status"

@@ -37,7 +37,9 @@ TEST(Randomisation, ItsTextIsReadAsTheSameOne) {
 }
 
 TEST(Randomisation, EachOptionButThoseOfTheChoiceChangesSomething) {
-  for (const core::Option& option : Randomisation().options().options()) {
+  Randomisation none;
+  const core::OptionSet set = none.options();
+  for (const core::Option& option : set.options()) {
     if (option.name == "texture_set" || option.name == "looks" || option.name == "look_seed") continue;
     Randomisation one;
     one.options().set(option.name, option.name == "distractors" ? "1" : "0.1", "test");

@@ -1,0 +1,1 @@
+// Its target precompiles headers; see CMakeLists.txt.
