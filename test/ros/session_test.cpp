@@ -185,6 +185,9 @@ TEST_F(SessionTest, AWorkerOfItsOwnEndsWhenTrainerOrMasterIsGone) {
   ASSERT_TRUE(trainerLess->ends(kSessionSec)) << trainerLess->output();
   EXPECT_NE(trainerLess->output().find("no trainer has published /progress for 2 s"), std::string::npos)
       << trainerLess->output();
+  for (const char* left : {"session_monitor_node", "state_publisher"}) {
+    for (const int process : processesWith({left, "__log:=" + files_->path("ros_home/log")})) ::kill(process, SIGKILL);
+  }
 
   const auto masterLess = launch("worker.launch", worker);
   ASSERT_TRUE(waitFor([&] { return processesOf("session_monitor").size() == 1; })) << masterLess->output();
