@@ -137,7 +137,7 @@ std::string findConfig(const std::string& folder, const std::string& name_or_fil
     if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  throw Error("'" + excerpt(name_or_file) + "' is neither one of the known " + folder + " (" + joined(known) +
+  throw Error("'" + excerpt(name_or_file) + "' is neither a name in config/" + folder + " (" + joined(known) +
               ") nor a .yaml file");
 }
 

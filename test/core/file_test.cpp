@@ -120,7 +120,7 @@ TEST_F(FileTest, ConfigNamesAreFoundAndPathsAreTakenAsTheyAre) {
     findConfig("tasks", "esay");
     ADD_FAILURE() << "accepted";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "'esay' is neither one of the known tasks (easy) nor a .yaml file");
+    EXPECT_STREQ(error.what(), "'esay' is neither a name in config/tasks (easy) nor a .yaml file");
   }
   ::unsetenv("EARLY_FUSION_SHARE");
 }

@@ -48,9 +48,9 @@ TEST(Task, TakesItsNameFromTheFileWhenNoneIsGiven) {
 
 TEST(Task, ListsTheKnownOnesForAnUnknownName) {
   const std::string error = world::errorOf([] { loadTask("harder"); });
-  EXPECT_TRUE(mentions(error, "'harder' is neither one of the known tasks (hard, medium, simple, three_of_eight) nor"))
+  EXPECT_TRUE(mentions(error, "'harder' is neither a name in config/tasks (hard, medium, simple, three_of_eight) nor"))
       << error;
-  EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is neither one of the known tasks"));
+  EXPECT_TRUE(mentions(world::errorOf([] { loadTask(""); }), "'' is neither a name in config/tasks"));
 }
 
 TEST(Task, NamesFileKeyAndValueOfAMistake) {
