@@ -31,12 +31,25 @@ core::Image sheet(const std::vector<core::Image>& images) {
   return result;
 }
 
+/// The camera of a step, with the roll and the focal length of its look.
+struct StepCamera {
+  Eigen::Isometry3d camera_from_world;
+  double fov_rad;  // horizontal
+};
+
+StepCamera cameraOf(const world::World& world, const PlayedStep& step) {
+  const world::Appearance look = step.setup.appearance ? *step.setup.appearance : world::Appearance();
+  const Eigen::AngleAxisd roll(look.camera_roll_rad, Eigen::Vector3d::UnitZ());
+  const double tangent = std::tan(0.5 * world.options.horizontal_fov_deg * kPi / 180);
+  return {(world.rig.worldFromCamera(step.state.orientation) * roll).inverse(),
+          2 * std::atan(tangent / look.focal_factor)};
+}
+
 /// Where an object is in the frame; nothing if part of it is behind the camera or none of it is in view.
-std::optional<model::Box> boxAround(const world::World& world, const sim::Instance& instance,
-                                    world::Orientation orientation, int size) {
-  const Eigen::Isometry3d camera_from_object =
-      world.rig.worldFromCamera(orientation).inverse() * sim::worldFromObject(world, instance);
-  const double focal_px = 0.5 * size / std::tan(0.5 * world.options.horizontal_fov_deg * kPi / 180);
+std::optional<model::Box> boxAround(const world::World& world, const sim::Instance& instance, const StepCamera& camera,
+                                    int size) {
+  const Eigen::Isometry3d camera_from_object = camera.camera_from_world * sim::worldFromObject(world, instance);
+  const double focal_px = 0.5 * size / std::tan(0.5 * camera.fov_rad);
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& corner : world.objects[instance.item].hull) {
     const Eigen::Vector3d seen = camera_from_object * corner;
@@ -51,14 +64,15 @@ std::optional<model::Box> boxAround(const world::World& world, const sim::Instan
   return model::Box{pixel(box.min().x()), pixel(box.min().y()), pixel(box.max().x()), pixel(box.max().y())};
 }
 
-std::vector<model::Box> boxesAroundRequested(const world::World& world, const PlayedStep& step, int size) {
+std::vector<model::Box> boxesAroundRequested(const world::World& world, const PlayedStep& step,
+                                             const StepCamera& camera, int size) {
   std::vector<model::Box> boxes;
   for (std::size_t i = 0; i < step.setup.instances.size(); ++i) {
     const sim::Instance& instance = step.setup.instances[i];
     const core::Request& request = step.state.request;
     const bool requested = std::find(request.begin(), request.end(), instance.item) != request.end();
     if (!requested || (step.state.present >> i & 1u) == 0) continue;
-    if (const auto box = boxAround(world, instance, step.state.orientation, size)) boxes.push_back(*box);
+    if (const auto box = boxAround(world, instance, camera, size)) boxes.push_back(*box);
   }
   return boxes;
 }
@@ -72,10 +86,10 @@ core::Image draw(render::Rasterizer& rasterizer, const world::World& world, cons
   model::Annotation annotation;
   if (style.annotate) {
     if (step.attention) model::tint(image, *step.attention);
-    const double fov_rad = world.options.horizontal_fov_deg * kPi / 180;
-    annotation.cone_radius_px = model::coneRadiusPx(sim::kConeHalfAngleRad, fov_rad, style.size);
+    const StepCamera camera = cameraOf(world, step);
+    annotation.cone_radius_px = model::coneRadiusPx(sim::kConeHalfAngleRad, camera.fov_rad, style.size);
     annotation.request = world.objects.vocabulary().names(step.state.request);
-    annotation.boxes = boxesAroundRequested(world, step, style.size);
+    annotation.boxes = boxesAroundRequested(world, step, camera, style.size);
     annotation.action = core::actionName(step.action);
     if (step.action != step.expert_action) {
       annotation.note = std::string("expert: ") + core::actionName(step.expert_action);
@@ -121,7 +135,8 @@ core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>
   return sheet(drawSteps(world, shown, style));
 }
 
-core::Image drawObjects(const world::World& world, const ImageStyle& style) {
+core::Image drawObjects(const world::World& world, std::shared_ptr<const world::Appearance> look,
+                        const ImageStyle& style) {
   render::Rasterizer rasterizer(world, style.size);
   std::vector<core::Image> images;
   for (int item = 0; item < world.objects.size(); ++item) {
@@ -129,6 +144,7 @@ core::Image drawObjects(const world::World& world, const ImageStyle& style) {
     const double x = 0.5 * (world.placement.min_x + world.placement.max_x);
     const double y = 0.5 * (world.placement.min_y + world.placement.max_y);
     step.setup.instances = {{item, x, y, 0.6}};
+    step.setup.appearance = look;
     step.state.present = 1;
     step.state.orientation = aimAt(world, {x, y, world.placement.z + 0.06});
     core::Image image = draw(rasterizer, world, step, {style.size, style.scale, false});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,7 +34,8 @@ std::vector<core::Image> drawSteps(const world::World& world, const std::vector<
 /// intervals between.
 core::Image drawEpisode(const world::World& world, const std::vector<PlayedStep>& steps, const ImageStyle& style);
 
-/// A sheet with each object of the set alone on the counter and its name below.
-core::Image drawObjects(const world::World& world, const ImageStyle& style);
+/// A sheet with each object of the set alone on the counter and its name below. @param look null: the world's own.
+core::Image drawObjects(const world::World& world, std::shared_ptr<const world::Appearance> look,
+                        const ImageStyle& style);
 
 }  // namespace early_fusion::cli

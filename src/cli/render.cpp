@@ -10,6 +10,7 @@
 #include "early_fusion/core/image_size.h"
 #include "early_fusion/core/output_file.h"
 #include "early_fusion/learning/evaluation.h"
+#include "early_fusion/sim/drawn_appearance.h"
 #include "images.h"
 #include "named_agent.h"
 
@@ -119,10 +120,18 @@ void makeFolder(const std::string& folder) {
   }
 }
 
+std::shared_ptr<const world::Appearance> withoutDistractors(world::Appearance look) {
+  look.distractors.clear();
+  return std::make_shared<const world::Appearance>(std::move(look));
+}
+
 /// @return the image that RenderOptions::image asks for, not "steps".
 core::Image draw(const RenderOptions& options, const world::World& world, const sim::Task& task,
                  const ImageStyle& style) {
-  if (options.image == "objects") return drawObjects(world, style);
+  if (options.image == "objects") {
+    const auto look = sim::drawAppearance(world, task.randomisation, {}, options.seed, options.episode);
+    return drawObjects(world, look ? withoutDistractors(*look) : nullptr, style);
+  }
   const std::vector<PlayedStep> played = play(options, world, task);
   if (options.image == "episode") return drawEpisode(world, played, style);
   return drawSteps(world, {played[options.step]}, style).front();

@@ -64,7 +64,8 @@ Settings parseSettings(const std::string& yaml, const std::string& source) {
 }
 
 /// @throws Error naming the first setting in which the two YAML texts differ.
-void checkSame(const std::string& stored, const std::string& wanted, const std::string& source) {
+/// @param of names what the settings are of, such as "randomisation: "; empty for the session's own.
+void checkSame(const std::string& stored, const std::string& wanted, const std::string& of, const std::string& source) {
   const Settings before = parseSettings(stored, source), now = parseSettings(wanted, source);
   Settings all = before;
   all.insert(now.begin(), now.end());
@@ -78,8 +79,8 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
         name == "precision" ? "; set precision to " + value(before, name) +
                                   " to go on in that arithmetic on this processor, or choose another output folder"
                             : "; resume it with the same settings, or choose another output folder";
-    throw core::Error(source + ": the session was started with " + core::excerpt(name) + " = " + value(before, name) +
-                      ", not " + value(now, name) + advice);
+    throw core::Error(source + ": the session was started with " + of + core::excerpt(name) + " = " +
+                      value(before, name) + ", not " + value(now, name) + advice);
   }
 }
 
@@ -153,7 +154,7 @@ void TrainingSession::resume() {
                       "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
   }
   for (const auto& [key, yaml] : settings(options_, training_task_, world_->options)) {
-    checkSame(file.meta(key, source), yaml, source);
+    checkSame(file.meta(key, source), yaml, key == kRandomisation ? "randomisation: " : "", source);
   }
   trainer_->restore(file, source, [this](const auto& episodes, const auto& finished) { replay(episodes, finished); });
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);

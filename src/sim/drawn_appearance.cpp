@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "early_fusion/core/random.h"
+#include "early_fusion/world/placed_hull.h"
 
 namespace early_fusion::sim {
 
@@ -87,6 +88,27 @@ double radius(const world::World& world, int item) {
   return std::sqrt(square);
 }
 
+/// Whether a distractor stands on the counter's top, clear of the kitchen's collision shapes.
+bool standsOnCounter(const world::World& world, const world::Distractor& one, double disc_radius) {
+  const world::HorizontalRectangle& top = world.counter_top;
+  if (one.x - disc_radius < top.min_x || one.x + disc_radius > top.max_x || one.y - disc_radius < top.min_y ||
+      one.y + disc_radius > top.max_y) {
+    return false;
+  }
+  const Eigen::Vector3d low(-0.5 * one.size[0], -0.5 * one.size[1], 0), high(-low.x(), -low.y(), one.size[2]);
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(one.x, one.y, world.placement.z);
+  pose.rotate(Eigen::AngleAxisd(one.theta, Eigen::Vector3d::UnitZ()));
+  const world::PlacedHull hull(corners, pose);
+  return std::none_of(world.obstacles.begin(), world.obstacles.end(), [&hull](const auto& obstacle) {
+    return hull.bounds().intersects(obstacle->bounds()) && hull.distanceTo(*obstacle) == 0;
+  });
+}
+
 std::vector<world::Distractor> distractors(const world::World& world, const Randomisation& most,
                                            const std::vector<Instance>& instances, core::Random& random) {
   struct Disc {
@@ -110,7 +132,7 @@ std::vector<world::Distractor> distractors(const world::World& world, const Rand
     const bool is_free = std::none_of(taken.begin(), taken.end(), [&](const Disc& other) {
       return (other.centre - disc.centre).norm() < other.radius + disc.radius;
     });
-    if (!is_free) continue;
+    if (!is_free || !standsOnCounter(world, one, disc.radius)) continue;
     taken.push_back(disc);
     placed.push_back(one);
   }

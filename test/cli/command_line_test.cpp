@@ -146,6 +146,23 @@ TEST_F(CommandLine, RendersStepsEpisodesAndObjectsInTheSizeAskedFor) {
   EXPECT_EQ(core::readFile(path("steps/step_47.png")), core::readFile(path("last.png")));
 }
 
+TEST_F(CommandLine, RendersALookWithItsObjectsAndWithTheBoxesInTheirPlaces) {
+  ASSERT_EQ(run("render --image objects --size 32 --out " + path("plain.png")), 0) << errors_;
+  ASSERT_EQ(run("render --image objects --size 32 --randomisation kitchen_1 --out " + path("look.png")), 0) << errors_;
+  EXPECT_NE(core::readFile(path("plain.png")), core::readFile(path("look.png")));
+  core::writeFileAtomically(path("turned.yaml"), "{camera_roll: 45, looks: 1, look_seed: 3}");
+  /// Where the annotation changes the frame.
+  const auto marks = [&](const std::string& look) {
+    const std::string step = "render --task hard --seed 3 --episode 1 --size 128 --randomisation " + look + " ";
+    EXPECT_EQ(run(step + "--annotate --out " + path("with.png")), 0) << errors_;
+    EXPECT_EQ(run(step + "--out " + path("without.png")), 0) << errors_;
+    cv::Mat difference;
+    cv::absdiff(cv::imread(path("with.png")), cv::imread(path("without.png")), difference);
+    return cv::Mat(difference > 0);
+  };
+  EXPECT_GT(cv::norm(marks("none"), marks(path("turned.yaml")), cv::NORM_L1), 0) << "boxes turn with the camera";
+}
+
 TEST_F(CommandLine, RendersWhatAPolicyAttendsTo) {
   const auto rednessOf = [&](const std::string& kind) {
     model::PolicyOptions options;

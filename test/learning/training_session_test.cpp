@@ -143,7 +143,7 @@ TEST_F(TrainingSessionTest, ARandomisedSessionResumesBitForBitAndRefusesAnotherF
   SessionOptions again = noisy("parts");
   again.resume = true;
   core::writeFileAtomically(file, "{noise: 6, exposure: 1, kitchen_textures: 1, distractors: 2}");
-  EXPECT_NE(errorOf(again).find("the session was started with noise = '5', not '6'"), std::string::npos)
+  EXPECT_NE(errorOf(again).find("the session was started with randomisation: noise = '5', not '6'"), std::string::npos)
       << errorOf(again);
   core::writeFileAtomically(file, "{noise: 5, exposure: 1, kitchen_textures: 1, distractors: 2}");
   TrainingSession resumed(again, world());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "early_fusion/world/placed_hull.h"
 #include "world/test_world.h"
 
 namespace early_fusion::sim {
@@ -135,6 +136,38 @@ TEST(DrawnAppearance, ThereAreAsManyLooksAsWanted) {
     gains.insert(drawAppearance(world(), most, {}, episode, episode)->sensor.gain[1]);
   }
   EXPECT_EQ(gains.size(), 3u);
+}
+
+TEST(DrawnAppearance, DistractorsStandOnTheCounterAndClearOfTheKitchen) {
+  world::World wide = world();
+  wide.placement = wide.counter_top;
+  // A post in the middle of the counter.
+  const Eigen::Vector3d middle(0.5 * (wide.counter_top.min_x + wide.counter_top.max_x), 0, wide.counter_top.z);
+  const std::vector<Eigen::Vector3d> post = {{-0.1, -0.3, 0}, {0.1, -0.3, 0}, {-0.1, 0.3, 0}, {0.1, 0.3, 0},
+                                             {-0.1, -0.3, 1}, {0.1, -0.3, 1}, {-0.1, 0.3, 1}, {0.1, 0.3, 1}};
+  wide.obstacles = {std::make_shared<world::PlacedHull>(post, Eigen::Isometry3d(Eigen::Translation3d(middle)))};
+  Randomisation most;
+  most.distractors = 16;
+  int placed = 0;
+  for (std::uint64_t episode = 0; episode < 100; ++episode) {
+    const auto look = drawAppearance(wide, most, {}, 1, episode);
+    for (const world::Distractor& one : look->distractors) {
+      ++placed;
+      const Eigen::Rotation2Dd turn(one.theta);
+      for (const double along : {-0.5, 0.0, 0.5}) {
+        for (const double across : {-0.5, 0.0, 0.5}) {
+          const Eigen::Vector2d p =
+              Eigen::Vector2d(one.x, one.y) + turn * Eigen::Vector2d(along * one.size[0], across * one.size[1]);
+          EXPECT_GE(p.x(), wide.counter_top.min_x);
+          EXPECT_LE(p.x(), wide.counter_top.max_x);
+          EXPECT_GE(p.y(), wide.counter_top.min_y);
+          EXPECT_LE(p.y(), wide.counter_top.max_y);
+          EXPECT_FALSE(std::fabs(p.x() - middle.x()) < 0.1 && std::fabs(p.y() - middle.y()) < 0.3);
+        }
+      }
+    }
+  }
+  EXPECT_GT(placed, 300);
 }
 
 TEST(DrawnAppearance, DistractorsTouchNoObjectAndNotEachOther) {
