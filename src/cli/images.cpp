@@ -38,7 +38,8 @@ struct StepCamera {
 };
 
 StepCamera cameraOf(const world::World& world, const PlayedStep& step) {
-  const world::Appearance look = step.setup.appearance ? *step.setup.appearance : world::Appearance();
+  static const world::Appearance kPlain;
+  const world::Appearance& look = step.setup.appearance ? *step.setup.appearance : kPlain;
   const Eigen::AngleAxisd roll(look.camera_roll_rad, Eigen::Vector3d::UnitZ());
   const double tangent = std::tan(0.5 * world.options.horizontal_fov_deg * kPi / 180);
   return {(world.rig.worldFromCamera(step.state.orientation) * roll).inverse(),

@@ -44,13 +44,19 @@ std::string learningOptions(SessionOptions options) {
   return options.options().toYaml();
 }
 
-/// The settings that must be the same when a session is resumed: YAML texts by their metadata keys.
-std::array<std::pair<const char*, std::string>, 4> settings(const SessionOptions& options, sim::Task training_task,
-                                                            world::WorldOptions world) {
-  return {{{kOptions, learningOptions(options)},
-           {kTask, training_task.options().toYaml()},
-           {kWorld, world.options().toYaml()},
-           {kRandomisation, training_task.randomisation.options().toYaml()}}};
+/// Settings that must be the same when a session is resumed.
+struct StoredSettings {
+  const char* key;  // in the checkpoint's metadata
+  const char* of;   // names in errors what they are settings of
+  std::string yaml;
+};
+
+std::array<StoredSettings, 4> storedSettings(const SessionOptions& options, sim::Task training_task,
+                                             world::WorldOptions world) {
+  return {{{kOptions, "", learningOptions(options)},
+           {kTask, "", training_task.options().toYaml()},
+           {kWorld, "", world.options().toYaml()},
+           {kRandomisation, "randomisation: ", training_task.randomisation.options().toYaml()}}};
 }
 
 using Settings = std::map<std::string, std::string>;
@@ -63,10 +69,9 @@ Settings parseSettings(const std::string& yaml, const std::string& source) {
   }
 }
 
-/// @throws Error naming the first setting in which the two YAML texts differ.
-/// @param of names what the settings are of, such as "randomisation: "; empty for the session's own.
-void checkSame(const std::string& stored, const std::string& wanted, const std::string& of, const std::string& source) {
-  const Settings before = parseSettings(stored, source), now = parseSettings(wanted, source);
+/// @throws Error naming the first setting in which the YAML text of a checkpoint differs from what is wanted.
+void checkSame(const std::string& stored, const StoredSettings& wanted, const std::string& source) {
+  const Settings before = parseSettings(stored, source), now = parseSettings(wanted.yaml, source);
   Settings all = before;
   all.insert(now.begin(), now.end());
   const auto value = [](const Settings& settings, const std::string& name) {
@@ -79,7 +84,7 @@ void checkSame(const std::string& stored, const std::string& wanted, const std::
         name == "precision" ? "; set precision to " + value(before, name) +
                                   " to go on in that arithmetic on this processor, or choose another output folder"
                             : "; resume it with the same settings, or choose another output folder";
-    throw core::Error(source + ": the session was started with " + of + core::excerpt(name) + " = " +
+    throw core::Error(source + ": the session was started with " + wanted.of + core::excerpt(name) + " = " +
                       value(before, name) + ", not " + value(now, name) + advice);
   }
 }
@@ -92,16 +97,8 @@ double parseSeconds(const std::string& text, const std::string& source) {
   return seconds;
 }
 
-/// The task of the training episodes. @throws Error if the options do not fit the task.
-sim::Task trainingTaskOf(const TrainingOptions& options, sim::Task task) {
-  return sim::withRandomisation(options.randomisation,
-                                sim::withPairs(options.pairs.held_out_pairs > 0 ? "trained" : "all", options.pairs,
-                                               sim::withUpTo(options.max_instances, std::move(task))));
-}
-
-}  // namespace
-
-void checkSession(const SessionOptions& options, const world::World& world) {
+/// The task of the training episodes. @param task the session's. @throws Error as checkSession().
+sim::Task checkedTrainingTask(const SessionOptions& options, const world::World& world, sim::Task task) {
   refuseHeldOutSeed("seed", options.seed);
   if (options.policy.image_size != world.options.image_size) {
     throw core::Error("image_size: the policy's is " + std::to_string(options.policy.image_size) +
@@ -114,14 +111,22 @@ void checkSession(const SessionOptions& options, const world::World& world) {
   if (!options.from.empty() && options.training.restart_policy) {
     throw core::Error("from: a policy that restarts in each round (restart_policy) forgets it; set only one of them");
   }
-  trainingTaskOf(options.training, sim::loadTask(options.task));
+  const TrainingOptions& training = options.training;
+  return sim::withRandomisation(training.randomisation,
+                                sim::withPairs(training.pairs.held_out_pairs > 0 ? "trained" : "all", training.pairs,
+                                               sim::withUpTo(training.max_instances, std::move(task))));
+}
+
+}  // namespace
+
+void checkSession(const SessionOptions& options, const world::World& world) {
+  checkedTrainingTask(options, world, sim::loadTask(options.task));
 }
 
 TrainingSession::TrainingSession(const SessionOptions& options, std::shared_ptr<const world::World> world)
     : options_(options), world_(std::move(world)), task_(sim::loadTask(options.task)) {
   if (options_.output.empty()) throw core::Error("output: the session needs a folder to write to");
-  checkSession(options_, *world_);
-  training_task_ = trainingTaskOf(options_.training, task_);
+  training_task_ = checkedTrainingTask(options_, *world_, task_);
   options_.policy.horizontal_fov_deg = world_->options.horizontal_fov_deg;
   options_.policy.precision = model::resolvedPrecision(options_.policy.precision);
   lock_ = std::make_unique<core::FolderLock>(options_.output);
@@ -153,8 +158,8 @@ void TrainingSession::resume() {
                       ": has no digest, so damage could not be seen; it is damaged, or an earlier version wrote it; "
                       "'early_fusion inspect FILE --rewrite FILE' adds a digest to a file that you trust");
   }
-  for (const auto& [key, yaml] : settings(options_, training_task_, world_->options)) {
-    checkSame(file.meta(key, source), yaml, key == kRandomisation ? "randomisation: " : "", source);
+  for (const StoredSettings& wanted : storedSettings(options_, training_task_, world_->options)) {
+    checkSame(file.meta(wanted.key, source), wanted, source);
   }
   trainer_->restore(file, source, [this](const auto& episodes, const auto& finished) { replay(episodes, finished); });
   elapsed_before_sec_ = parseSeconds(file.meta(kElapsed, source), source);
@@ -194,7 +199,9 @@ void TrainingSession::save() const {
   weights().write(weightsPath());
   core::writeFileAtomically(path(kCurveFile), curve_.toCsv());
   nn::WeightsFile file = trainer_->save();
-  for (const auto& [key, yaml] : settings(options_, training_task_, world_->options)) file.metadata[key] = yaml;
+  for (const StoredSettings& stored : storedSettings(options_, training_task_, world_->options)) {
+    file.metadata[stored.key] = stored.yaml;
+  }
   file.metadata[kElapsed] = std::to_string(elapsedSec());
   file.metadata[kCurve] = curve_.toCsv();
   file.write(path(kCheckpoint));

@@ -90,20 +90,14 @@ double radius(const world::World& world, int item) {
 
 /// Whether a distractor stands on the counter's top, clear of the kitchen's collision shapes.
 bool standsOnCounter(const world::World& world, const world::Distractor& one, double disc_radius) {
-  const world::HorizontalRectangle& top = world.counter_top;
-  if (one.x - disc_radius < top.min_x || one.x + disc_radius > top.max_x || one.y - disc_radius < top.min_y ||
-      one.y + disc_radius > top.max_y) {
-    return false;
-  }
-  const Eigen::Vector3d low(-0.5 * one.size[0], -0.5 * one.size[1], 0), high(-low.x(), -low.y(), one.size[2]);
+  const Eigen::Vector3d centre(one.x, one.y, world.placement.z), reach(disc_radius, disc_radius, 0);
+  if (world.counter_top.overhang({centre - reach, centre + reach}) > 0) return false;
+  const Eigen::Vector3d half(0.5 * one.size[0], 0.5 * one.size[1], 0), up(0, 0, one.size[2]);
+  const Eigen::AlignedBox3d box(-half, half + up);
   std::vector<Eigen::Vector3d> corners;
-  for (int i = 0; i < 8; ++i) {
-    corners.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = Eigen::Vector3d(one.x, one.y, world.placement.z);
-  pose.rotate(Eigen::AngleAxisd(one.theta, Eigen::Vector3d::UnitZ()));
-  const world::PlacedHull hull(corners, pose);
+  for (int i = 0; i < 8; ++i) corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  const world::PlacedHull hull(corners,
+                               Eigen::Translation3d(centre) * Eigen::AngleAxisd(one.theta, Eigen::Vector3d::UnitZ()));
   return std::none_of(world.obstacles.begin(), world.obstacles.end(), [&hull](const auto& obstacle) {
     return hull.bounds().intersects(obstacle->bounds()) && hull.distanceTo(*obstacle) == 0;
   });

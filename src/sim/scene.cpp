@@ -26,7 +26,7 @@ class CounterTop {
   /// Adds the instance if it is clear of all others and of the kitchen and its overhang is allowed.
   bool place(const Instance& instance) {
     world::PlacedHull hull(world_.objects[instance.item].hull, worldFromObject(world_, instance));
-    if (overhang(hull) > world_.options.max_overhang) return false;
+    if (world_.counter_top.overhang(hull.bounds()) > world_.options.max_overhang) return false;
     for (const auto& obstacle : world_.obstacles) {
       if (tooNear(hull, *obstacle)) return false;
     }
@@ -39,14 +39,6 @@ class CounterTop {
 
  private:
   static constexpr double kTouching = 1e-6;  // [m]; objects must not overlap even if the clearance is 0
-
-  /// The length by which a hull overhangs an edge of the counter's top [m]; negative if it does not.
-  double overhang(const world::PlacedHull& hull) const {
-    const world::HorizontalRectangle& top = world_.counter_top;
-    const Eigen::AlignedBox3d& box = hull.bounds();
-    return std::max(
-        {top.min_x - box.min().x(), box.max().x() - top.max_x, top.min_y - box.min().y(), box.max().y() - top.max_y});
-  }
 
   bool tooNear(const world::PlacedHull& hull, const world::PlacedHull& other) const {
     const double clearance = std::max(world_.options.clearance, kTouching);

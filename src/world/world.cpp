@@ -1,5 +1,6 @@
 #include "early_fusion/world/world.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "early_fusion/core/error.h"
@@ -29,6 +30,10 @@ std::string orShipped(const std::string& world_file) {
 }
 
 }  // namespace
+
+double HorizontalRectangle::overhang(const Eigen::AlignedBox3d& box) const {
+  return std::max({min_x - box.min().x(), box.max().x() - max_x, min_y - box.min().y(), box.max().y() - max_y});
+}
 
 core::OptionSet WorldOptions::options() {
   core::OptionSet set("world");

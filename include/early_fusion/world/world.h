@@ -43,6 +43,9 @@ struct FixedMesh {
 /// In the world frame [m].
 struct HorizontalRectangle {
   double min_x, max_x, min_y, max_y, z;
+
+  /// The length by which a box reaches beyond an edge [m]; negative if it does not.
+  double overhang(const Eigen::AlignedBox3d& box) const;
 };
 
 /// Everything that is the same in all episodes. Immutable and shared between threads.
